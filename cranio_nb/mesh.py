@@ -1,0 +1,59 @@
+"""A triangle mesh in the world: vertices in mm (DICOM LPS), faces wound so that normals point outward."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Triangles.
+
+    Parameters
+    ----------
+    vertices : ndarray of float, shape (V, 3)
+        World positions in mm.
+    faces : ndarray of int, shape (F, 3)
+        Vertex indices, counter-clockwise seen from outside.
+    """
+
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.intp]
+
+    @property
+    def corners(self) -> NDArray[np.float64]:
+        """Corner positions of each face, shape (F, 3, 3), mm."""
+        return self.vertices[self.faces]
+
+    @property
+    def centres(self) -> NDArray[np.float64]:
+        """Centroid of each face, shape (F, 3), mm."""
+        return self.corners.mean(axis=1)
+
+    @property
+    def area_vectors(self) -> NDArray[np.float64]:
+        """Outward normal of each face times its area, shape (F, 3), mm2."""
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        return np.cross(b - a, c - a) / 2
+
+    @property
+    def areas(self) -> NDArray[np.float64]:
+        """Area of each face, shape (F,), mm2."""
+        return np.linalg.norm(self.area_vectors, axis=1)
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        """Outward unit normal of each face, shape (F, 3); zero for a face without area."""
+        lengths = self.areas[:, None]
+        return np.divide(self.area_vectors, lengths, out=np.zeros((len(self.faces), 3)), where=lengths > 0)
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume in mm3 by the divergence theorem; positive when normals point outward."""
+        if not len(self.faces):
+            return 0.0
+        a, b, c = np.moveaxis(self.corners - self.vertices.mean(axis=0), 1, 0)  # near the origin: no cancellation
+        return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
