@@ -1,0 +1,1 @@
+"""The independent witness: synthetic heads with known truth. Imports nothing from cranio_nb."""
