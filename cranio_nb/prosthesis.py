@@ -70,6 +70,8 @@ class Prosthesis:
         Every parameter of the method, JSON-able.
     record : dict
         What happened: for slice methods a list ``slices`` of per-slice values, findings, timings. JSON-able.
+    working : tuple
+        The method's own intermediate results, one per lesion, for pictures and lessons.
     """
 
     mesh: Mesh
@@ -78,6 +80,7 @@ class Prosthesis:
     method: str
     parameters: dict[str, Any] = field(default_factory=dict)
     record: dict[str, Any] = field(default_factory=dict)
+    working: tuple[Any, ...] = ()
 
     def surface(self, side: int) -> Mesh:
         """The faces of one side as an open mesh (`OUTER`, `INNER` or `RIM`), with only the vertices it uses."""

@@ -1,0 +1,1 @@
+"""Ways to design a prosthesis, all behind the same door: bone mask in -> `Prosthesis` out."""

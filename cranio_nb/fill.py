@@ -1,0 +1,102 @@
+"""Stage 4, fill: the two curves across the gap of a slice come in -> the pixels of the patch go out.
+
+Frame: slice (row, col) px.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from skimage.draw import polygon
+from skimage.morphology import convex_hull_image
+
+from .curves import Points
+
+_EIGHT = np.ones((3, 3), bool)
+
+
+def between(outer: Points, inner: Points, shape: tuple[int, int]) -> NDArray[np.bool_]:
+    """Pixels between the outer and the inner curve.
+
+    Parameters
+    ----------
+    outer, inner : ndarray, shape (n, 2)
+        Curves that run across the gap in the same sense, slice (row, col).
+    shape : tuple of int
+        Rows and columns of the slice.
+
+    Returns
+    -------
+    ndarray of bool, shape `shape`
+    """
+    outline = np.concatenate([outer, inner[::-1]])
+    region = np.zeros(shape, bool)
+    region[polygon(outline[:, 0], outline[:, 1], shape)] = True
+    return region
+
+
+def patch(outer: Points, inner: Points, bone: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The patch of a slice: between the curves, off the bone, and reaching from one curve to the other (Fig. 5b).
+
+    Parameters
+    ----------
+    outer, inner : ndarray, shape (n, 2)
+        Curves across the gap, slice (row, col).
+    bone : ndarray of bool, shape (R, C)
+    """
+    region = between(outer, inner, (bone.shape[0], bone.shape[1])) & ~bone
+    labels, n_parts = ndimage.label(region, _EIGHT)
+    if n_parts <= 1:
+        return region
+    keep = np.intersect1d(_labels_on(outer, labels), _labels_on(inner, labels))
+    return np.isin(labels, keep[keep > 0])
+
+
+def partial_loss(bone: NDArray[np.bool_], *, min_area: float, region: NDArray[np.bool_] | None = None) -> NDArray:
+    """The patch of a closed ring with a dent: convex hull minus bone, without islands and the cavity (Fig. 6).
+
+    Parameters
+    ----------
+    bone : ndarray of bool, shape (R, C)
+        A closed ring.
+    min_area : float
+        Islands of fewer pixels are dropped.
+    region : ndarray of bool, shape (R, C), optional
+        Where the lesion is; other dents of the skull are natural and stay.
+    """
+    missing = convex_hull_image(bone) & ~bone
+    labels, n_parts = ndimage.label(missing, _EIGHT)
+    sizes = np.bincount(labels.ravel(), minlength=n_parts + 1)
+    sizes[0] = 0
+    keep = sizes >= min_area
+    keep[np.argmax(sizes)] = False
+    if region is not None:
+        keep &= np.bincount(labels[region], minlength=n_parts + 1) > 0
+    return keep[labels]
+
+
+def _labels_on(curve: Points, labels: NDArray) -> NDArray:
+    """Labels met within a pixel of a curve."""
+    dense = np.concatenate([curve, (curve[1:] + curve[:-1]) / 2])
+    near = np.rint(dense[:, None] + np.array([[0, 0], [1, 0], [-1, 0], [0, 1], [0, -1]])).astype(int).reshape(-1, 2)
+    near = near[((near >= 0) & (near < labels.shape)).all(axis=1)]
+    return np.unique(labels[tuple(near.T)])
+
+
+def main_piece(patch: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The patch without slivers: opened by one voxel, and the piece that fills most of the opening.
+
+    Parameters
+    ----------
+    patch, opening : ndarray of bool, shape (P, R, C)
+        The opening is the lesion's coarse sheet.
+    """
+    core = ndimage.binary_opening(patch)
+    labels, n_parts = ndimage.label(core)
+    if not n_parts:
+        return patch
+    votes = np.bincount(labels[opening], minlength=n_parts + 1)
+    votes[0] = 0
+    best = int(np.argmax(votes)) if votes.any() else int(np.bincount(labels.ravel())[1:].argmax()) + 1
+    return labels == best
