@@ -1,1 +1,25 @@
-"""The independent witness: synthetic heads with known truth. Imports nothing from cranio_nb."""
+"""The independent witness: synthetic heads and virtual craniectomies with known truth.
+
+It shares no code with the package it tests. `python -m data_synth --help` writes cases to disk.
+"""
+
+from .case import Case
+from .cut import cut_case
+from .defect import DEFECTS, DefectSpec
+from .head import HeadShape
+from .phantom import SIZES, leaning, phantom_case, scan
+from .truth import Gap, SliceTruth
+
+__all__ = [
+    "DEFECTS",
+    "SIZES",
+    "Case",
+    "DefectSpec",
+    "Gap",
+    "HeadShape",
+    "SliceTruth",
+    "cut_case",
+    "leaning",
+    "phantom_case",
+    "scan",
+]
