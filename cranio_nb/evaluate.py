@@ -1,4 +1,4 @@
-"""A patch and the truth -> how far apart they are: overlap of voxels, distance of surfaces, fit against the bone.
+"""A patch and the truth -> how far apart they are: overlap of voxels, distance of surfaces.
 
 Frame: masks are `Volume`s on one grid, meshes stand in world mm; distances are in mm unless both meshes were taken
 `in_voxels` first. An empty mask is a possible answer of a method, so it is measured, not refused: two empty masks
@@ -47,15 +47,6 @@ class Score:
     rmse: float
     volume_ratio: float
     overlap: int
-
-
-@dataclass(frozen=True)
-class GapStats:
-    """Distance from the rim of a prosthesis to the bone around it, mm; weighted by the area of the faces."""
-
-    mean: float
-    p95: float
-    max: float
 
 
 def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
@@ -120,7 +111,7 @@ def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach: float = B
 def volume_ratio(patch: Volume, truth: Volume) -> float:
     """Volume of the patch over the volume of the truth; 1 for two empty masks, inf where only the truth is empty."""
     _check_grid(patch, truth)
-    found, wanted = np.count_nonzero(patch.voxels), np.count_nonzero(truth.voxels)
+    found, wanted = int(np.count_nonzero(patch.voxels)), int(np.count_nonzero(truth.voxels))
     if wanted == 0:
         return 1.0 if found == 0 else float("inf")
     return found / wanted
@@ -219,73 +210,12 @@ def thickness(prosthesis: Prosthesis) -> NDArray[np.float64]:
 
 
 def thickness_rmse(prosthesis: Prosthesis, truth: Prosthesis) -> float:
-    """Root mean square difference in mm of the thickness at each outer node and at the true outer node nearest to it."""
+    """Root mean square difference of thickness in mm, at each outer node and the true outer node nearest to it."""
     nodes, true_nodes = prosthesis.surface(OUTER).vertices, truth.surface(OUTER).vertices
     if not len(nodes) or not len(true_nodes):
         raise InputRefused("EmptyMesh", "A prosthesis without an outer side has no thickness.")
     _, twin = cKDTree(true_nodes).query(nodes)
     return _root_mean_square(thickness(prosthesis) - thickness(truth)[twin])
-
-
-def rim_gap(rim: Mesh, bone: Volume) -> GapStats:
-    """How well a rim meets the bone.
-
-    Parameters
-    ----------
-    rim : Mesh
-        The rim faces of a prosthesis, world mm.
-    bone : Volume
-        Bool mask (P, R, C) of the skull with the hole.
-
-    Returns
-    -------
-    GapStats
-        Distance from each face's centre to the nearest bone voxel's box, 0 where they touch, weighted by face area.
-
-    Raises
-    ------
-    InputRefused
-        If the rim has no faces (EmptyMesh) or the skull no bone (NoBone).
-    """
-    if not len(rim.faces):
-        raise InputRefused("EmptyMesh", "The prosthesis has no rim; a gap needs one.")
-    gap = distance_to_voxels(rim.centres, bone)
-    order = np.argsort(gap)
-    share = np.cumsum(rim.areas[order]) / rim.areas.sum()
-    p95 = gap[order][min(np.searchsorted(share, 0.95), len(gap) - 1)]
-    return GapStats(float(np.average(gap, weights=rim.areas)), float(p95), float(gap.max()))
-
-
-def distance_to_voxels(points: NDArray[np.float64], mask: Volume) -> NDArray[np.float64]:
-    """Distance in mm from world points, shape (N, 3), to the boxes of a mask's voxels, shape (N,); 0 inside.
-
-    The nearest box is looked for among the eight voxels whose centres are nearest.
-    """
-    surface = _surface_voxels(mask, points)
-    _, near = cKDTree(mask.to_world(surface)).query(points, k=np.arange(1, 1 + min(8, len(surface))))
-    step = mask.to_voxel(points)[:, None] - surface[near]
-    outside = step - np.clip(step, -0.5, 0.5)
-    gap = np.linalg.norm(outside @ mask.affine[:3, :3].T, axis=2).min(axis=1)
-    index = np.rint(mask.to_voxel(points)).astype(int)
-    within = ((index >= 0) & (index < mask.shape)).all(axis=1)
-    within[within] = mask.voxels[tuple(index[within].T)]
-    return np.where(within, 0.0, gap)
-
-
-def _surface_voxels(mask: Volume, points: NDArray[np.float64]) -> NDArray[np.intp]:
-    """Indices of the surface voxels of a mask that can be nearest to any of the points, shape (n, 3)."""
-    index = mask.to_voxel(points)
-    for margin in (20.0, np.inf):  # mm: the bone around a rim; else the whole mask
-        reach = np.minimum(np.ceil(margin / mask.spacing) + 1, max(mask.shape))
-        lo = np.clip(np.floor(index.min(axis=0)) - reach, 0, mask.shape).astype(int)
-        hi = np.clip(np.ceil(index.max(axis=0)) + reach + 1, 0, mask.shape).astype(int)
-        if margin == np.inf:
-            lo, hi = np.zeros(3, int), np.array(mask.shape)
-        box = tuple(slice(a, b) for a, b in zip(lo, hi, strict=True))
-        found = np.argwhere(_surface(mask.voxels[box])) + lo
-        if len(found):
-            return found
-    raise InputRefused("NoBone", "The bone mask is empty; a gap needs bone.")
 
 
 def _near_bone(skull: Volume, index: NDArray[np.intp], reach: float) -> NDArray[np.bool_]:
@@ -319,8 +249,8 @@ def _box(*masks: NDArray[np.bool_]) -> tuple[slice, slice, slice]:
 
 
 def _dice(a: NDArray[np.bool_], b: NDArray[np.bool_]) -> float:
-    total = np.count_nonzero(a) + np.count_nonzero(b)
-    return 2 * np.count_nonzero(a & b) / total if total else 1.0
+    total = int(np.count_nonzero(a)) + int(np.count_nonzero(b))
+    return 2 * int(np.count_nonzero(a & b)) / total if total else 1.0
 
 
 def _percentile95(distances: NDArray[np.float64]) -> float:

@@ -25,7 +25,7 @@ from .volume import Volume
 
 _HALF_VOXEL = 0.5
 _STEP = 0.4  # below 1 / (largest eigenvalue of the bending energy), which is about 2.25 for marching cubes
-_VOLUME_STEPS = 3
+_VOLUME_STEPS = 2
 
 
 @dataclass(frozen=True)
