@@ -1,0 +1,177 @@
+"""NIfTI or NRRD file -> `Volume` and its report. Only the declared number of bytes is ever read or inflated.
+
+World is DICOM LPS, mm: NIfTI counts x and y the other way round, NRRD says how it counts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputRefused
+from ..volume import Affine, Volume, canonical_order
+from .plausible import AIR, check_finite, check_hu, clear_padding, is_mask
+from .regrid import slide_slices
+from .report import Finding, LoadReport
+
+MAX_VOXELS = 2**30
+_SPACING_RANGE = (0.1, 10.0)  # mm
+_CORNER_TOL = 0.05  # mm
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """What a file says, before anything is made of it.
+
+    `raw` has the file's own axes (i, j, k) and numbers; `affine` maps their index to LPS mm; a value is
+    raw * `slope` + `intercept`.
+    """
+
+    source: str
+    raw: NDArray
+    affine: Affine
+    slope: float = 1.0
+    intercept: float = 0.0
+    findings: tuple[Finding, ...] = ()
+
+
+def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] = ()) -> tuple[Volume, LoadReport]:
+    """Read one NIfTI or NRRD file; parameters, returns and errors are those of `cranio_nb.readers.read_ct`."""
+    with open(path, "rb") as stream:
+        start = stream.read(352)
+        stream.seek(0)
+        if start.startswith(b"NRRD000"):
+            from .nrrd_file import read_nrrd as read
+        elif start[:2] == b"\x1f\x8b" or start[344:348] in (b"n+1\0", b"ni1\0") or start[4:8] in (b"n+2\0", b"ni2\0"):
+            from .nifti_file import read_nifti as read
+        else:
+            message = "The file is neither DICOM nor NIfTI nor NRRD."
+            raise InputRefused("UnsupportedFile", message, "Give a DICOM folder, or a .nii, .nii.gz or .nrrd file.")
+        image = read(stream, allow)
+    check_grid(image)
+    voxels, findings = _values(image, mask, allow)
+    return _finish(image, voxels, [*image.findings, *findings])
+
+
+def read_exactly(stream: BinaryIO, count: int) -> bytearray:
+    """`count` bytes of a stream, inflated or not.
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptFile`` where it ends before.
+    """
+    content = bytearray(count)
+    view, filled = memoryview(content), 0
+    while filled < count:
+        part = stream.read(min(count - filled, 2**24))
+        if not part:
+            message = f"The file is cut short: it holds {filled} of {count} bytes of voxels."
+            raise InputRefused("CorruptFile", message, "Copy the file again from its source.")
+        view[filled : filled + len(part)] = part
+        filled += len(part)
+    return content
+
+
+def spatial_shape(sizes: list[int]) -> tuple[int, int, int]:
+    """Three sizes of an image, axes of one sample beyond the third left out.
+
+    Raises
+    ------
+    InputRefused
+        ``BadShape`` unless three axes remain; ``LimitExceeded`` beyond `MAX_VOXELS`.
+    """
+    if len(sizes) < 3 or any(size != 1 for size in sizes[3:]) or min(sizes) < 1:
+        message = f"The image has the sizes {' x '.join(str(s) for s in sizes)}; three axes are wanted."
+        raise InputRefused("BadShape", message, "Give one 3-D volume.")
+    shape = (int(sizes[0]), int(sizes[1]), int(sizes[2]))
+    if shape[0] * shape[1] * shape[2] > MAX_VOXELS:
+        message = f"The image declares {' x '.join(str(s) for s in shape)} voxels; at most {MAX_VOXELS} are read."
+        raise InputRefused("LimitExceeded", message, "Crop it to the head.")
+    return shape
+
+
+def no_orientation(what: str) -> InputRefused:
+    """The refusal for a file that does not say where left is."""
+    return InputRefused("NoOrientation", what, "Convert it again with its orientation, or allow no_orientation.")
+
+
+def check_grid(image: Image) -> None:
+    """Refuse an affine that is not finite and invertible, or voxels of an impossible size (``BadGeometry``)."""
+    matrix, remedy = image.affine[:3, :3], "Convert the file again from its source."
+    if not np.isfinite(image.affine).all() or abs(np.linalg.det(matrix)) < 1e-9:
+        raise InputRefused("BadGeometry", "The file's affine is not finite and invertible.", remedy)
+    spacing, (low, high) = np.linalg.norm(matrix, axis=0), _SPACING_RANGE
+    if spacing.min() < low or spacing.max() > high:
+        listed = " x ".join(f"{s:.4g}" for s in spacing)
+        message = f"Voxels measure {listed} mm; {low:g} to {high:g} mm are wanted."
+        raise InputRefused("BadGeometry", message, f"{remedy[:-1]}, and check its units.")
+    if min(image.raw.shape) < 2:
+        raise InputRefused("BadShape", f"The image has the shape {image.raw.shape}; a volume is wanted.", remedy)
+
+
+def _values(image: Image, mask: bool | None, allow: Collection[str]) -> tuple[NDArray, list[Finding]]:
+    """HU or mask on the file's own axes, and what was noticed."""
+    check_finite(image.raw)
+    scaled = (image.slope, image.intercept) != (1.0, 0.0)
+    hu = _scaled(image.raw, image.slope, image.intercept) if scaled else image.raw
+    if mask or (mask is None and is_mask(hu)):
+        return hu != 0, []
+    hu, findings = clear_padding(_compact(hu))
+    return hu, findings + check_hu(hu, allow)
+
+
+def _scaled(raw: NDArray, slope: float, intercept: float) -> NDArray:
+    if raw.dtype.kind in "iu" and slope.is_integer() and intercept.is_integer():
+        return raw.astype(np.int32 if raw.itemsize <= 2 else np.int64) * int(slope) + int(intercept)
+    return (raw * slope + intercept).astype(np.float32)
+
+
+def _compact(hu: NDArray) -> NDArray:
+    """int16 where all values are whole and fit, else float32."""
+    info = np.iinfo(np.int16)
+    if info.min <= hu.min() and hu.max() <= info.max:
+        whole = hu.astype(np.int16)
+        if hu.dtype.kind in "iu" or np.array_equal(whole, hu):
+            return whole
+    return hu.astype(np.float32)
+
+
+def _finish(image: Image, voxels: NDArray, findings: list[Finding]) -> tuple[Volume, LoadReport]:
+    stored = Volume(voxels, image.affine)
+    order = canonical_order(image.affine)
+    volume = stored.reorder(order)
+    volume = volume.with_voxels(np.ascontiguousarray(volume.voxels))
+    upright, more = _upright(volume)
+    stored_affine = image.affine if upright is volume else upright.reorder(order.inverse).affine
+    p, r, c = (float(s) for s in upright.spacing)
+    kind = "mask" if voxels.dtype == bool else "ct"
+    report = LoadReport(image.source, kind, upright.shape, (p, r, c), 0.0, stored_affine, order, tuple(findings + more))
+    return upright, report
+
+
+def _upright(volume: Volume) -> tuple[Volume, list[Finding]]:
+    """A volume whose planes stand on each other: a sheared one has its planes shifted back."""
+    planes, rows, cols = volume.affine[:3, :3].T
+    spacing = volume.spacing
+    if abs(rows @ cols) / (spacing[1] * spacing[2]) * max(volume.shape[1:]) * spacing[1:].max() > _CORNER_TOL:
+        message = "The rows and columns of the file's affine are not at right angles."
+        raise InputRefused("BadGeometry", message, "Resample the image onto a straight grid.")
+    in_plane = np.stack([rows, cols])
+    slide = in_plane @ planes / spacing[1:] ** 2
+    count = volume.shape[0]
+    if np.abs(slide).max() * (count - 1) <= 0.5:
+        return volume, []
+    fill = 0 if volume.voxels.dtype == bool else AIR
+    voxels, start = slide_slices(volume.voxels, np.arange(count)[:, None] * slide, fill=fill)
+    affine = volume.affine.copy()
+    affine[:3, 0] = planes - slide @ in_plane
+    affine[:3, 3] += start @ in_plane
+    angle = float(np.degrees(np.arccos(np.clip(np.linalg.norm(affine[:3, 0]) / spacing[0], -1, 1))))
+    message = f"The planes were sheared by {angle:.1f} degrees; they were shifted back onto a straight grid."
+    return Volume(voxels, affine), [Finding("Sheared", "corrected", message, {"degrees": round(angle, 3)})]

@@ -1,0 +1,97 @@
+"""Path -> volume and load report: looks at what the path is, and turns whatever goes wrong into one sentence."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from os import PathLike
+from pathlib import Path
+
+from ..errors import CranioError, InputRefused
+from ..volume import Volume
+from .report import LoadReport
+
+ALLOWANCES = ("gap_fill", "implausible_hu", "no_orientation", "no_rescale", "wrong_modality")
+
+
+def read_ct(
+    path: str | PathLike[str],
+    *,
+    mask: bool | None = None,
+    allow: Collection[str] = (),
+    progress: Callable[[int, int], None] | None = None,
+) -> tuple[Volume, LoadReport]:
+    """Read a head CT, or a bone mask, with a report of what was found, chosen, left and corrected.
+
+    Parameters
+    ----------
+    path : path
+        A folder of DICOM files (any names, up to 8 levels of subfolders), a multi-frame DICOM file, a NIfTI file
+        (``.nii``, ``.nii.gz``) or a NRRD file.
+    mask : bool, optional
+        True takes every nonzero voxel as bone, False takes the values as HU. By default data of nothing but 0 and 1
+        are a mask.
+    allow : collection of str
+        Relaxations, each by its name, each leaving a warning in the report:
+        ``"gap_fill"`` interpolates missing slices; ``"implausible_hu"`` takes values that do not look like HU;
+        ``"no_orientation"`` takes a NIfTI or NRRD file without orientation as it lies; ``"no_rescale"`` takes
+        values without rescale slope and intercept as HU; ``"wrong_modality"`` takes images that are not CT.
+    progress : callable, optional
+        Called with (slices done, slices in all).
+
+    Returns
+    -------
+    volume : Volume
+        Planes rise to the top of the head, rows to the back, columns to the left (LPS mm; axes are only permuted and
+        flipped). HU as int16 where they are whole numbers, else float32; bool for a mask.
+    report : LoadReport
+
+    Raises
+    ------
+    InputRefused
+        Whatever cannot be read safely, with a stable code, one sentence and a remedy.
+
+    Examples
+    --------
+    >>> ct, report = read_ct("head_ct")  # doctest: +SKIP
+    >>> [finding.message for finding in report.findings]  # doctest: +SKIP
+    """
+    unknown = sorted(set(allow) - set(ALLOWANCES))
+    if unknown:
+        known = ", ".join(ALLOWANCES)
+        raise InputRefused("UnknownAllowance", f"There is no allowance named {unknown[0]!r}.", f"Known are: {known}.")
+    try:
+        return _read(Path(path), mask=mask, allow=allow, progress=progress)
+    except CranioError:
+        raise
+    except PermissionError:
+        raise InputRefused("PermissionDenied", "The path may not be read.", "Check its permissions.") from None
+    except MemoryError:
+        raise InputRefused("LimitExceeded", "The scan does not fit into memory.", "Free memory, or crop it.") from None
+    except Exception as error:
+        # broken input may raise anything: here it becomes one sentence, without the input's own words
+        message = f"The input cannot be read ({type(error).__name__})."
+        raise InputRefused("CorruptFile", message, "Export the scan again from its source.") from None
+
+
+def _read(
+    path: Path, *, mask: bool | None, allow: Collection[str], progress: Callable[[int, int], None] | None
+) -> tuple[Volume, LoadReport]:
+    # each format's library is loaded only where it is needed
+    if path.is_dir() or (path.is_file() and _looks_like_dicom(path)):
+        from .dicom import read_dicom
+
+        return read_dicom(path, mask=mask, allow=allow, progress=progress)
+    if path.is_file():
+        from .images import read_image
+
+        return read_image(path, mask=mask, allow=allow)
+    if path.exists():
+        raise InputRefused("UnsupportedFile", "The path is neither a folder nor a regular file.")
+    raise InputRefused("NotFound", "There is no such file or folder.", "Check the path.")
+
+
+def _looks_like_dicom(path: Path) -> bool:
+    from .dicom_scan import looks_like_dicom
+
+    with open(path, "rb") as stream:
+        return looks_like_dicom(stream.read(136))
