@@ -8,11 +8,14 @@ from .cut import cut_case
 from .defect import DEFECTS, DefectSpec
 from .head import HeadShape
 from .phantom import SIZES, leaning, phantom_case, scan
+from .series import ORIENTATIONS, SYNTAXES, write_dicom
 from .truth import Gap, SliceTruth
 
 __all__ = [
     "DEFECTS",
+    "ORIENTATIONS",
     "SIZES",
+    "SYNTAXES",
     "Case",
     "DefectSpec",
     "Gap",
@@ -22,4 +25,5 @@ __all__ = [
     "leaning",
     "phantom_case",
     "scan",
+    "write_dicom",
 ]

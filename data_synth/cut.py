@@ -77,7 +77,7 @@ def cut_case(
     """
     affine, rng = np.asarray(affine, float), np.random.default_rng(seed)
     solid = voxels != 0 if is_mask else voxels >= threshold
-    vault = _find_vault(_main_part(solid), affine)
+    vault = _find_vault(_main_parts(solid), affine)
     cutters = plan_cutters(defect, rng, vault.radius, diameter=diameter)
     parts = np.zeros(voxels.shape, np.float32)
     for cutter in cutters:
@@ -141,12 +141,12 @@ class _Vault:
     def _near(self, cutter: Cutter) -> NDArray[np.intp]:
         """Indices (n, 3) of the voxels in the cutter's cone, with a margin of a few mm, 30 to 150 mm away."""
         blocks = []
+        rows, cols = np.arange(self.bone.shape[1])[:, None], np.arange(self.bone.shape[2])
         for plane in range(self.bone.shape[0]):
-            rows, cols = np.indices(self.bone.shape[1:], sparse=True)
             start = self.affine[:3, :3] @ [plane, 0, 0] + self.affine[:3, 3] - self.centre
             xyz = [start[i] + self.affine[i, 1] * rows + self.affine[i, 2] * cols for i in range(3)]
             away = np.sqrt(xyz[0] ** 2 + xyz[1] ** 2 + xyz[2] ** 2)
-            along = sum(xyz[i] * cutter.axes[2, i] for i in range(3))
+            along = np.einsum("irc,i->rc", xyz, cutter.axes[2])
             found = np.argwhere((away > 30) & (away < 150) & (along > cutter.reach * away - 3))
             blocks.append(np.insert(found, 0, plane, axis=1))
         return np.concatenate(blocks)
@@ -177,12 +177,13 @@ def _find_vault(bone: Mask, affine: Array) -> _Vault:
     return _Vault(bone, affine, np.r_[middle, top - 80.0])
 
 
-def _main_part(solid: Mask) -> Mask:
-    """The largest connected piece; a table or a head holder is another."""
+def _main_parts(solid: Mask) -> Mask:
+    """The large connected pieces: a sawn skull has two, a table or a head holder is smaller."""
     labels, count = ndimage.label(solid)
     if count == 0:
         raise ValueError("There is no bone in this scan.")
-    return labels == np.bincount(labels.ravel())[1:].argmax() + 1
+    sizes = np.bincount(labels.ravel())[1:]
+    return np.r_[False, sizes > 0.2 * sizes.max()][labels]
 
 
 def _across(direction: Array) -> Array:

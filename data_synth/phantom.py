@@ -177,7 +177,7 @@ def _head_centre(grid: Size) -> Array:
     """Where the head lies: the vertex 9 mm under the top plane, a little aside of the middle, room at the back."""
     start, steps = _upright_affine(grid)[:3, 3], np.array(grid.spacing[::-1])
     extent = steps * (np.array(grid.shape[::-1]) - 1)
-    return start + [extent[0] / 2 + 2.3, extent[1] / 2 - 6.1, extent[2] - 100.4]
+    return start + extent * [0.5, 0.5, 1.0] + [2.3, -6.1, -100.4]
 
 
 def _offsets(head: HeadShape, affine: Array, plane: float, shape: tuple[int, ...]) -> Array:

@@ -10,13 +10,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import brentq
 
 if TYPE_CHECKING:
     from .head import HeadShape
 
 Array = NDArray[np.float64]
-_N_RAYS = 1440
+_N_RAYS = 720
 _N_CURVE = 101
 
 
@@ -93,33 +92,38 @@ class _Plane:
     index: float
     surface: int  # 0 outer, 1 inner
 
-    def point(self, angle: float | Array) -> Array:
+    def point(self, angle: Array) -> Array:
         """Offsets (..., 3) from the head's centre of the surface's points in the plane at angles (...)."""
-        angle = np.asarray(angle, float)
-        start, rows, cols = self._frame()
+        start, rows, cols = self.frame()
         ray = np.cos(angle)[..., None] * cols + np.sin(angle)[..., None] * rows
         low, high = np.zeros(angle.shape), np.full(angle.shape, 200.0)
-        for _ in range(50):
+        for _ in range(12):
             middle = (low + high) / 2
-            p = start + middle[..., None] * ray
-            inside = np.linalg.norm(p, axis=-1) < self.radius(p)
+            inside = self.depth(start + middle[..., None] * ray) > 0
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
+        for _ in range(4):
+            p = start + low[..., None] * ray
+            low = low + self.depth(p) / (self.head.gradients(p)[self.surface] * ray).sum(-1)
         return start + low[..., None] * ray
+
+    def depth(self, p: Array) -> Array:
+        """How far points (..., 3) lie inside the surface, mm along the ray from the centre."""
+        length = np.linalg.norm(p, axis=-1)
+        return self.radius(p) - length
 
     def radius(self, p: Array) -> Array:
         d = p / np.linalg.norm(p, axis=-1, keepdims=True)
         return self.head.inner_radius(d) if self.surface else self.head.outer_radius(d)
 
-    def missing(self, angle: float | Array, defect: int) -> Array:
+    def missing(self, angle: Array, defect: int) -> Array:
         """Distance in mm by which the surface at these angles lies inside a cutter."""
         p = self.point(angle)
         d = p / np.linalg.norm(p, axis=-1, keepdims=True)
-        # on the surface the cutter's floor is far away: only a cutter of full depth takes the inner surface
         return self.head.cutters[defect].distance(p, self.head.inner_radius(d), self.head.outer_radius(d))
 
     def tangent(self, p: Array) -> Array:
         """Unit tangents (..., 3) of the surface's curve in the plane, with the angle growing."""
-        _, rows, cols = self._frame()
+        _, rows, cols = self.frame()
         along = np.cross(np.cross(cols, rows), self.head.gradients(p)[self.surface])
         return along / np.linalg.norm(along, axis=-1, keepdims=True)
 
@@ -128,13 +132,13 @@ class _Plane:
         shift = 0 if vector else self.head.centre - self.affine[:3, 3]
         return ((p + shift) @ np.linalg.inv(self.affine[:3, :3]).T)[..., 1:]
 
-    def _frame(self) -> tuple[Array, Array, Array]:
+    def frame(self) -> tuple[Array, Array, Array]:
         """A point of the plane inside the head (near the axis), and unit vectors along rows and columns."""
         rows, cols = (self.affine[:3, i] / np.linalg.norm(self.affine[:3, i]) for i in (1, 2))
         corner = self.affine[:3, :3] @ [self.index, 0, 0] + self.affine[:3, 3] - self.head.centre
         normal = np.cross(cols, rows)
         height = corner @ normal / normal[2]
-        return np.array([0.0, 0.0, height]), rows, cols
+        return np.array([0.0, 0.0, height + 1e-9]), rows, cols
 
 
 def gaps_in_slice(head: HeadShape, affine: Array, plane: float) -> tuple[SliceTruth, ...]:
@@ -163,20 +167,26 @@ def gaps_in_slice(head: HeadShape, affine: Array, plane: float) -> tuple[SliceTr
 
 
 def _gap(plane: _Plane, defect: int) -> Gap | None:
-    angles = np.linspace(0, 2 * np.pi, _N_RAYS, endpoint=False)
-    start = plane.point(0.0)
-    if np.linalg.norm(start - plane._frame()[0]) < 1e-6:
+    if plane.depth(plane.frame()[0]) <= 0:
         return None
-    missing = plane.missing(angles, defect) > 0
+    step = 2 * np.pi / _N_RAYS
+    missing = plane.missing(np.arange(_N_RAYS) * step, defect) > 0
     if not missing.any() or missing.all():
         return None
     first, last = _widest_run(missing)
-    step = angles[1]
-    ends = [
-        brentq(lambda a: float(plane.missing(a, defect)), a, b, xtol=1e-10)
-        for a, b in (((first - 1) * step, first * step), (last * step, (last + 1) * step))
-    ]
-    return _measure(plane, np.array(ends))
+    return _measure(plane, _crossings(plane, defect, step * np.array([[first - 1, first], [last + 1, last]])))
+
+
+def _crossings(plane: _Plane, defect: int, brackets: Array) -> Array:
+    """Angles (n,) where the cutter's rim crosses the curve, between brackets (n, 2) from outside to inside it."""
+    share = np.linspace(0, 1, 33)
+    for _ in range(6):
+        angles = brackets[:, :1] + share * np.diff(brackets)
+        inside = plane.missing(angles, defect) > 0
+        inside[:, -1] = True
+        first = inside.argmax(axis=1)
+        brackets = np.take_along_axis(angles, np.column_stack([first - 1, first]), axis=1)
+    return brackets.mean(axis=1)
 
 
 def _widest_run(missing: NDArray[np.bool_]) -> tuple[int, int]:
@@ -192,12 +202,12 @@ def _widest_run(missing: NDArray[np.bool_]) -> tuple[int, int]:
 
 def _measure(plane: _Plane, ends: Array) -> Gap:
     """Gap between two angles of a plane's curve."""
-    curve = plane.point(np.linspace(*ends, _N_CURVE))
+    curve = plane.point(np.linspace(ends[0], ends[1], _N_CURVE))
     directions = plane.tangent(curve[[0, -1]]) * [[1], [-1]]
     points, tangents = plane.to_slice(curve), plane.to_slice(directions, vector=True)
     tangents /= np.linalg.norm(tangents, axis=-1, keepdims=True)
     along = (curve[-1] - curve[0]) / np.linalg.norm(curve[-1] - curve[0])
-    _, rows, cols = plane._frame()
+    _, rows, cols = plane.frame()
     out = np.cross(along, np.cross(cols, rows))
     angles = np.rad2deg(np.arctan2(directions @ out, directions @ along))
     return Gap(points[[0, -1]], tangents, points, angles)
