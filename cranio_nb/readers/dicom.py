@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from ..volume import Affine, Volume, canonical_order
 from .dicom_codecs import LOSSY
-from .dicom_files import list_files
+from .dicom_files import IMAGE_SUFFIXES, list_files
 from .dicom_geometry import Stack, build_stack
 from .dicom_headers import SliceHeader, slice_headers
 from .dicom_pixels import check_format, stored_pixels, to_hu
@@ -57,16 +57,20 @@ def read_dicom(
 def _all_headers(path: Path) -> tuple[list[SliceHeader], list[Finding]]:
     files, findings = ([path], []) if path.is_file() else list_files(path)
     headers: list[SliceHeader] = []
-    others = empty = 0
+    others: list[Path] = []
+    empty = 0
     for index, file in enumerate(files):
         scanned = scan(file, index)
         images = slice_headers(*scanned, index) if scanned else []
-        others += scanned is None
-        empty += scanned is not None and not images
         headers += images
+        if scanned is None:
+            others.append(file)
+        elif not images:
+            empty += 1
     if others:
-        message = f"{others} of {len(files)} files are not DICOM and were left."
-        findings.append(Finding("FilesSkipped", "info", message, {"not_dicom": others}))
+        misnamed = any(file.suffix.lower() in IMAGE_SUFFIXES for file in others)
+        message = f"{len(others)} of {len(files)} files are not DICOM and were left."
+        findings.append(Finding("FilesSkipped", "warning" if misnamed else "info", message, {"not_dicom": len(others)}))
     if empty:
         message = f"{empty} of {len(files)} files hold no image and were left."
         findings.append(Finding("FilesSkipped", "info", message, {"no_image": empty}))

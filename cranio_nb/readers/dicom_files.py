@@ -14,7 +14,8 @@ MAX_FILES = 20_000
 MAX_DEPTH = 8
 # A file index by name only: it points elsewhere, and the folder is walked anyway.
 _INDEX_NAMES = {"dicomdir"}
-_IMAGE_SUFFIXES = {".dcm", ".dicom", ".ima"}
+IMAGE_SUFFIXES = {".dcm", ".dicom", ".ima"}
+_PREAMBLE = 132  # bytes before the first element
 
 
 def list_files(folder: Path) -> tuple[list[Path], list[Finding]]:
@@ -72,13 +73,11 @@ def _kind(entry: os.DirEntry[str]) -> str:
         return "special file"
     if entry.name.lower() in _INDEX_NAMES:
         return "file index"
-    if entry.stat(follow_symlinks=False).st_size:
-        return "file"
-    if Path(entry.name).suffix.lower() in _IMAGE_SUFFIXES:
-        raise InputRefused(
-            "CorruptDicom", "One image file of the folder is empty (0 bytes).", "Copy the scan again from its source."
-        )
-    return "empty file"
+    size = entry.stat(follow_symlinks=False).st_size
+    if size <= _PREAMBLE and Path(entry.name).suffix.lower() in IMAGE_SUFFIXES:
+        message = f"One image file of the folder has only {size} bytes."
+        raise InputRefused("CorruptDicom", message, "Copy the scan again from its source.")
+    return "file" if size else "empty file"
 
 
 def _skipped_findings(skipped: Counter[str]) -> list[Finding]:

@@ -25,6 +25,8 @@ MAX_SIDE = 4096  # rows, columns
 MAX_SLICES = 4000
 MAX_INFLATED = 256 * 2**20  # bytes of one inflated file
 UNDEFINED_LENGTH = 0xFFFFFFFF
+# CT images, classic and multi-frame; some writers leave the class out
+CT_CLASSES = {"", "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.2.1", "1.2.840.10008.5.1.4.1.1.2.2"}
 _FLOAT_PIXELS = (0x7FE00008, 0x7FE00009)
 _PIXELS = (*_FLOAT_PIXELS, 0x7FE00010)
 _ITEM, _SEQUENCE_END = 0xFFFEE000, 0xFFFEE0DD
@@ -102,24 +104,24 @@ def corrupt(file: int, what: str, code: str = "CorruptDicom") -> InputRefused:
     return InputRefused(code, f"DICOM file {file} of the folder {what}.", "Copy the scan again from its source.")
 
 
-def dataset_stream(stream: BinaryIO, file: int) -> tuple[str, BinaryIO]:
-    """Transfer syntax of an open file, and a stream at the start of its data set (inflated where deflated)."""
+def dataset_stream(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
+    """The meta elements of an open file, and a stream at the start of its data set (inflated where deflated)."""
     stream.seek(128)
     if stream.read(4) != b"DICM":
         stream.seek(0)
     meta = read_dataset(stream, False, True, stop_when=lambda tag, vr, length: tag >> 16 != 2)
-    syntax = str(meta.get("TransferSyntaxUID") or ImplicitVRLittleEndian)
-    if syntax != DeflatedExplicitVRLittleEndian:
-        return syntax, stream
+    if meta.get("TransferSyntaxUID") != DeflatedExplicitVRLittleEndian:
+        return meta, stream
     inflate = zlib.decompressobj(-zlib.MAX_WBITS)
     inflated = inflate.decompress(stream.read(), MAX_INFLATED)
     if inflate.unconsumed_tail:
         raise _over_limit(file, "bytes once inflated", f"more than {MAX_INFLATED}", MAX_INFLATED)
-    return syntax, io.BytesIO(inflated)
+    return meta, io.BytesIO(inflated)
 
 
 def _scan(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace | None]:
-    syntax, data = dataset_stream(stream, file)
+    meta, data = dataset_stream(stream, file)
+    syntax = str(meta.get("TransferSyntaxUID") or ImplicitVRLittleEndian)
     places: list[PixelPlace] = []
 
     def at_pixels(tag: int, vr: str | None, length: int) -> bool:
@@ -130,7 +132,7 @@ def _scan(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace 
     implicit, little = syntax == ImplicitVRLittleEndian, syntax != ExplicitVRBigEndian
     dataset = read_dataset(data, implicit, little, stop_when=at_pixels, specific_tags=_TAGS)
     if not places:
-        _check_end(data, dataset, file)
+        _check_end(data, meta, dataset, file)
     if "Rows" in dataset or "Columns" in dataset:
         _check_sides(dataset, file)
     if places:
@@ -138,14 +140,22 @@ def _scan(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace 
     return dataset, places[0] if places else None
 
 
-def _check_end(data: BinaryIO, dataset: Dataset, file: int) -> None:
-    """A file without pixel data must end where its last element does."""
+def _check_end(data: BinaryIO, meta: Dataset, dataset: Dataset, file: int) -> None:
+    """A file without pixel data must end where its last element does, and must not be one that has an image."""
     position, size = data.tell(), data.seek(0, io.SEEK_END)
+    if position != size or _last_is_cut(meta) or _last_is_cut(dataset):
+        raise corrupt(file, "ends in the middle of an element")
+    sop_class = dataset.get("SOPClassUID") or meta.get("MediaStorageSOPClassUID") or ""
+    if "Rows" not in dataset and sop_class in CT_CLASSES:
+        raise corrupt(file, "ends before its image")
+
+
+def _last_is_cut(dataset: Dataset) -> bool:
+    """Whether the last element holds fewer bytes than it declares."""
     tags = list(dataset.keys())
     last = dataset.get_item(tags[-1]) if tags else None
     value, length = getattr(last, "value", None), getattr(last, "length", 0)
-    if position != size or (isinstance(value, bytes) and len(value) != length):
-        raise corrupt(file, "ends in the middle of an element")
+    return isinstance(value, bytes) and len(value) != length
 
 
 def _check_sides(dataset: Dataset, file: int) -> None:

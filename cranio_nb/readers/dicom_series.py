@@ -14,9 +14,10 @@ import numpy as np
 from ..errors import InputRefused
 from .dicom_geometry import MAX_STEP, MIN_SLICES, axes_of, bad_geometry, by_height, check_geometry
 from .dicom_headers import SliceHeader
+from .dicom_scan import CT_CLASSES
 from .report import Finding
 
-_CT_CLASSES = {"", "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.2.1", "1.2.840.10008.5.1.4.1.1.2.2"}
+_CT = ("CT", "")
 _STRAY = 3  # so few images are a scout or a reference picture, not a scan
 _HEAD = 150.0  # mm: a taller scan has no advantage over another
 _DIRECTION_TOL = 1e-4
@@ -99,9 +100,9 @@ def _why_not(header: SliceHeader, any_modality: bool) -> str:
         return "colour picture"
     if "LOCALIZER" in header.image_type:
         return "scout view"
-    if header.modality not in ("CT", "") and not any_modality:
+    if header.modality not in _CT and not any_modality:
         return "other modality"
-    if header.sop_class not in _CT_CLASSES and not any_modality:
+    if header.sop_class not in CT_CLASSES and not any_modality:
         return "not a CT image"
     if header.frames > 1 and header.position is None:
         return "film without positions"
@@ -109,7 +110,7 @@ def _why_not(header: SliceHeader, any_modality: bool) -> str:
 
 
 def _nothing_usable(headers: list[SliceHeader], left: Counter[str]) -> InputRefused:
-    others = sorted({h.modality for h in headers if h.modality not in ("CT", "")} & _MODALITIES)
+    others = sorted({h.modality for h in headers if h.modality not in _CT} & _MODALITIES)
     if left["other modality"]:
         found = ", ".join(others) or "another modality"
         return InputRefused("WrongModality", f"The images are {found}, not CT.", "Give the folder of a head CT.")
@@ -242,6 +243,8 @@ def _report(
         count = len(group)
         message = f"Left {count} image{'s' * (count > 1)} that fit no stack."
         findings.append(Finding("ImagesSkipped", "warning" if same else "info", message, {"images": count}))
+    if first.modality not in _CT or first.sop_class not in CT_CLASSES:
+        findings.append(Finding("WrongModality", "warning", "The images are not CT; they were read as allowed.", {}))
     if left:
         listed = ", ".join(f"{reason}: {count}" for reason, count in sorted(left.items()))
         findings.append(Finding("ImagesSkipped", "info", f"Left images that are no CT slices ({listed}).", dict(left)))

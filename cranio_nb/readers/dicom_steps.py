@@ -98,20 +98,27 @@ def _missing(stack: Stack, gone: list[int], gaps: NDArray[np.float64]) -> InputR
 
 def _numbering(stack: Stack) -> list[Finding]:
     """A remark where slice numbers do not run from 1 without holes: slices may be missing at an end."""
-    numbers = sorted(h.instance for h in stack.headers if h.instance is not None)
-    if len(numbers) != len(stack.headers) or stack.headers[0].frames > 1:
-        return []
-    if numbers[0] in (0, 1) and numbers[-1] - numbers[0] == len(numbers) - 1:
+    numbers = _numbers(stack)
+    if not numbers or (numbers[0] in (0, 1) and numbers[-1] - numbers[0] == len(numbers) - 1):
         return []
     message = f"{len(numbers)} slices are numbered from {numbers[0]} to {numbers[-1]}: some may be missing at an end."
     values = {"first": numbers[0], "last": numbers[-1], "slices": len(numbers)}
     return [Finding("SliceNumbers", "warning", message, values)]
 
 
+def _numbers(stack: Stack) -> list[int]:
+    """The slices' own numbers in rising order; empty where not every slice has one."""
+    numbers = sorted(h.instance for h in stack.headers if h.instance is not None)
+    return numbers if len(numbers) == len(stack.headers) else []
+
+
 def _thickness(stack: Stack, step: float) -> list[Finding]:
-    """A remark where slices are further apart than they are thick."""
+    """A remark where slices are further apart than they are thick; a refusal where their numbers jump as well."""
     thick = [h.thickness for h in stack.headers if h.thickness is not None and h.thickness > 0]
     if not thick or step <= 1.5 * max(thick):
         return []
-    message = f"Slices are {step:.2f} mm apart but {max(thick):.2f} mm thick: every other slice may be missing."
-    return [Finding("ThinSlices", "warning", message, {"step_mm": step, "thickness_mm": max(thick)})]
+    message = f"Slices are {step:.2f} mm apart but {max(thick):.2f} mm thick"
+    if _numbers(stack) and np.diff(_numbers(stack)).min() > 1:
+        raise InputRefused("MissingSlices", f"{message}, and their numbers jump.", "Export the complete series again.")
+    values = {"step_mm": step, "thickness_mm": max(thick)}
+    return [Finding("ThinSlices", "warning", f"{message}: there are gaps between them.", values)]
