@@ -86,17 +86,18 @@ def to_trim(patch: Volume, bone: Volume, axis: NDArray[np.float64], *, travel: f
         axis does not catch on its stairs: less than a voxel of undercut goes unseen.
     """
     _check_grid(patch, bone)
-    here = np.argwhere(patch.voxels)
-    hard = ndimage.binary_erosion(bone.voxels)
-    stride = bone.spacing.min() / 2
+    stride = bone.spacing.min()
     step = np.linalg.inv(bone.affine[:3, :3]) @ _unit(axis) * stride
+    box = _box_around(patch, np.ceil(np.abs(step) * travel / stride).astype(int) + 2)
+    hard = ndimage.binary_erosion(bone.voxels[box])
+    here = np.argwhere(patch.voxels[box])
     caught = np.zeros(len(here), bool)
     for n in range(1, int(travel / stride) + 1):
         index = np.rint(here + n * step).astype(int)
-        known = ((index >= 0) & (index < bone.shape)).all(axis=1)
+        known = ((index >= 0) & (index < hard.shape)).all(axis=1)
         caught[known] |= hard[tuple(index[known].T)]
     trimmed = np.zeros(patch.shape, bool)
-    trimmed[tuple(here[caught].T)] = True
+    trimmed[box][tuple(here[caught].T)] = True
     return patch.with_voxels(trimmed)
 
 

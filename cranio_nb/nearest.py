@@ -6,6 +6,7 @@ Frame: any, the same for points and mesh; distances come out in its unit (mm for
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import chain
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from scipy.spatial import cKDTree
 from .errors import InputRefused
 from .mesh import Mesh
 
-_CHUNK = 1 << 20  # point-triangle pairs measured at once
+_CHUNK = 20_000  # points searched at once
 _ON_EDGE = 1e-9  # a barycentric weight below this puts the place on an edge or a corner
 
 
@@ -54,7 +55,7 @@ def nearest(points: NDArray[np.float64], mesh: Mesh) -> Nearest:
     Returns
     -------
     Nearest
-        Exact to rounding: faces are tried in the order of their centres until no other face can be nearer.
+        Exact to rounding: every face that can be nearest is tried.
 
     Raises
     ------
@@ -74,33 +75,43 @@ def nearest(points: NDArray[np.float64], mesh: Mesh) -> Nearest:
 
 
 def _improve(best: Nearest, points: NDArray, mesh: Mesh, faces: NDArray[np.intp], reach: NDArray) -> None:
-    """Fill in the places that lie on these faces and are nearer than the best so far."""
-    tree, radius, n_near = cKDTree(mesh.centres[faces]), reach[faces].max(), min(8, len(faces))
-    open_points = np.arange(len(points))
-    while len(open_points):
-        still_open = []
-        for some in np.array_split(open_points, 1 + len(open_points) * n_near // _CHUNK):
-            far, near = tree.query(points[some], k=np.arange(1, n_near + 1))
-            _take_better(best, points, mesh, some, faces[near])
-            if n_near < len(faces):
-                still_open.append(some[far[:, -1] - radius < best.distance[some]])
-        open_points = np.concatenate(still_open) if still_open else open_points[:0]
-        n_near = min(4 * n_near, len(faces))
+    """Fill in the places that lie on these faces and are nearer than the best so far.
+
+    The face with the nearest centre gives a distance not to be exceeded; then all faces that could be nearer are tried.
+    """
+    tree, radius = cKDTree(mesh.centres[faces]), reach[faces].max()
+    far, near = tree.query(points)
+    every = np.arange(len(points))
+    _take_better(best, points, mesh, every, faces[near])
+    unsure = np.flatnonzero(far - radius < best.distance)
+    for some in np.array_split(unsure, 1 + len(unsure) // _CHUNK):
+        lists = tree.query_ball_point(points[some], best.distance[some] + radius, return_sorted=False)
+        count = np.fromiter(map(len, lists), np.intp, len(lists))
+        point = np.repeat(some, count)
+        face = faces[np.fromiter(chain.from_iterable(lists), np.intp, count.sum())]
+        hopeful = _disc_distance(points[point], mesh, face, reach) < best.distance[point]
+        _take_better(best, points, mesh, point[hopeful], face[hopeful])
 
 
-def _take_better(best: Nearest, points: NDArray, mesh: Mesh, some: NDArray[np.intp], near: NDArray[np.intp]) -> None:
-    """Measure some points against their candidate faces, shape (n, k), and keep what is nearer."""
-    n, k = near.shape
-    pairs = mesh.corners[near.ravel()] - np.repeat(points[some], k, axis=0)[:, None]
-    weights = origin_on_triangles(pairs)
-    distance = np.linalg.norm(np.einsum("nk,nkd->nd", weights, pairs), axis=1).reshape(n, k)
-    pick = distance.argmin(axis=1)
-    row = np.arange(n)
-    better = distance[row, pick] < best.distance[some]
-    row, pick, some = row[better], pick[better], some[better]
-    best.distance[some] = distance[row, pick]
-    best.face[some] = near[row, pick]
-    best.weights[some] = weights.reshape(n, k, 3)[row, pick]
+def _disc_distance(points: NDArray, mesh: Mesh, face: NDArray[np.intp], reach: NDArray) -> NDArray[np.float64]:
+    """Distance from each point to the disc around a face: never more than to the face."""
+    offset = points - mesh.centres[face]
+    height = np.einsum("nd,nd->n", offset, mesh.normals[face])
+    aside = np.sqrt(np.maximum(np.einsum("nd,nd->n", offset, offset) - height**2, 0))
+    return np.hypot(height, np.maximum(aside - reach[face] * (1 + 1e-9), 0)) * (1 - 1e-9)
+
+
+def _take_better(best: Nearest, points: NDArray, mesh: Mesh, point: NDArray[np.intp], face: NDArray[np.intp]) -> None:
+    """Measure pairs of point and face, and keep for each point what is nearer than its best so far."""
+    corners = mesh.corners[face] - points[point][:, None]
+    weights = origin_on_triangles(corners)
+    distance = np.linalg.norm(np.einsum("nk,nkd->nd", weights, corners), axis=1)
+    order = np.argsort(-distance, kind="stable")
+    order = order[distance[order] < best.distance[point[order]]]
+    # farthest first: of several faces for one point the nearest is written last and stays
+    best.distance[point[order]] = distance[order]
+    best.face[point[order]] = face[order]
+    best.weights[point[order]] = weights[order]
 
 
 def origin_on_triangles(corners: NDArray[np.float64]) -> NDArray[np.float64]:

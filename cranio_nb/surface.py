@@ -18,6 +18,7 @@ from scipy import ndimage, sparse
 from scipy.spatial import cKDTree
 from skimage.measure import marching_cubes
 
+from .crossings import crossings
 from .errors import InputRefused
 from .mesh import Mesh
 from .prosthesis import INNER, OUTER, RIM
@@ -26,6 +27,8 @@ from .volume import Volume
 _HALF_VOXEL = 0.5
 _STEP = 0.4  # below 1 / (largest eigenvalue of the bending energy), which is about 2.25 for marching cubes
 _VOLUME_STEPS = 2
+_UNTANGLE_STEPS = 8
+_SLIVER = 1e-3  # area of a face, in voxels, below which it counts as collapsed
 
 
 @dataclass(frozen=True)
@@ -93,8 +96,8 @@ def _smoothed(raw: NDArray, faces: NDArray[np.intp], inside: NDArray[np.bool_], 
     """Smooth vertices in index coordinates, each within half a voxel of its raw place."""
     start, same_faces = _cubes(_distance_field(inside, grid))
     assert np.array_equal(faces, same_faces)  # the signs alone fix the faces
-    relaxed = _relax(start, raw, faces, n_steps)
-    return _keep_volume(relaxed, raw, faces, grid)
+    relaxed = _keep_volume(_relax(start, raw, faces, n_steps), raw, faces, grid)
+    return _untangled(relaxed, start, faces, _thin(inside)[tuple(np.rint(raw).astype(int).T)])
 
 
 def _distance_field(inside: NDArray[np.bool_], grid: Volume) -> NDArray[np.float64]:
@@ -148,6 +151,33 @@ def _vertex_areas(mesh: Mesh) -> NDArray[np.float64]:
     """A third of the area vectors of the faces around each vertex, shape (V, 3)."""
     corners, shares = mesh.faces.ravel(), np.repeat(mesh.area_vectors / 3, 3, axis=0)
     return np.stack([np.bincount(corners, share, len(mesh.vertices)) for share in shares.T], axis=1)
+
+
+def _thin(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Neighbourhood of the places where the patch or the space around it is less than two voxels wide.
+
+    Only there do the boxes of half a voxel leave the surface room to pass through itself.
+    """
+    cube = np.ones((2, 2, 2), bool)
+    wide = np.pad(inside, 2)
+    thin = wide & ~ndimage.binary_opening(wide, cube) | ~wide & ~ndimage.binary_opening(~wide, cube)
+    return ndimage.binary_dilation(thin[2:-2, 2:-2, 2:-2], np.ones((3, 3, 3), bool), iterations=2)
+
+
+def _untangled(x: NDArray, start: NDArray, faces: NDArray[np.intp], thin: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Put vertices back to `start`, where nothing crosses, until no faces at thin places cross or collapse."""
+    x = x.copy()
+    watched = faces[thin[faces].any(axis=1)]
+    for _ in range(_UNTANGLE_STEPS):
+        part = Mesh(x, watched)
+        bad = np.union1d(crossings(part), np.flatnonzero(part.areas < _SLIVER))
+        if not len(bad):
+            return x
+        tangled = np.zeros(len(x), bool)
+        tangled[watched[bad]] = True
+        tangled[watched[tangled[watched].any(axis=1)]] = True  # and their neighbours
+        x[tangled] = start[tangled]
+    return start
 
 
 def face_sides(mesh: Mesh, bone: Volume, centre: NDArray[np.float64]) -> NDArray[np.uint8]:
