@@ -182,7 +182,7 @@ class SliceFeatures:
     @property
     def in_hull(self) -> NDArray[np.bool_]:
         """Which boundary pixels lie in the hull, shape (M,)."""
-        return (self.boundary @ self.hull[:, :2].T + self.hull[:, 2] <= 1e-9).all(axis=1)
+        return np.all(self.boundary @ self.hull[:, :2].T + self.hull[:, 2] <= 1e-9, axis=1)
 
     @property
     def outer(self) -> Points:

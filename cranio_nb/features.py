@@ -50,7 +50,8 @@ def slice_features(bone: NDArray[np.bool_], *, min_part: float = 0.03) -> SliceF
     boundary = np.argwhere(bone & ~ndimage.binary_erosion(padded)[1:-1, 1:-1])
     thin = skeletonize(padded)[1:-1, 1:-1]
     labels, n_parts = ndimage.label(thin, np.ones((3, 3)))
-    spines = [longest_path(np.argwhere(labels == part)) for part in range(1, n_parts + 1)]
+    depth = ndimage.distance_transform_edt(padded)[1:-1, 1:-1]
+    spines = [_unforked(longest_path(np.argwhere(labels == part)), depth) for part in range(1, n_parts + 1)]
     spines = sorted((s for s in spines if len(s) > 3), key=len, reverse=True)
     points = np.argwhere(thin)
     if not spines or np.ptp(points, axis=0).min() < 2:
@@ -136,6 +137,13 @@ def fit_line(points: Points) -> tuple[Points, Points]:
     """Centre and unit direction of the total-least-squares line through points, shape (2,) each."""
     centre = points.mean(axis=0)
     return centre, np.linalg.svd(points - centre, full_matrices=False)[2][0]
+
+
+def _unforked(spine: Points, depth: NDArray[np.float64], full: float = 0.8) -> Points:
+    """The spine without its ends in the corners of the cut: from where it first lies at `full` of its usual depth."""
+    along = depth[tuple(spine.astype(np.intp).T)]
+    deep = np.flatnonzero(along >= full * np.median(along))
+    return spine[deep[0] : deep[-1] + 1]
 
 
 def _end(boundary: Points, spine: Points, skip: float, reach: float) -> tuple[Points, Points]:

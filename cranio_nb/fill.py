@@ -46,6 +46,7 @@ def patch(outer: Points, inner: Points, bone: NDArray[np.bool_]) -> NDArray[np.b
     bone : ndarray of bool, shape (R, C)
     """
     region = between(outer, inner, (bone.shape[0], bone.shape[1])) & ~bone
+    region = ndimage.binary_opening(region)  # slivers where a curve grazes the bone's surface
     labels, n_parts = ndimage.label(region, _EIGHT)
     if n_parts <= 1:
         return region
@@ -85,16 +86,15 @@ def _labels_on(curve: Points, labels: NDArray) -> NDArray:
 
 
 def main_piece(patch: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The patch without slivers: opened by one voxel, and the piece that fills most of the opening.
+    """The piece of a patch that fills most of the opening.
 
     Parameters
     ----------
     patch, opening : ndarray of bool, shape (P, R, C)
         The opening is the lesion's coarse sheet.
     """
-    core = ndimage.binary_opening(patch)
-    labels, n_parts = ndimage.label(core)
-    if not n_parts:
+    labels, n_parts = ndimage.label(patch)
+    if n_parts <= 1:
         return patch
     votes = np.bincount(labels[opening], minlength=n_parts + 1)
     votes[0] = 0

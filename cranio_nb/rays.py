@@ -82,7 +82,9 @@ def look(slices: NDArray[np.bool_], centre: NDArray[np.float64], angles: NDArray
     return RayProfile(np.asarray(centre, float), np.asarray(angles, float), inner, outer)
 
 
-def find_gaps(profile: RayProfile, opening: NDArray[np.bool_], *, thin: float = 0.6) -> NDArray[np.intp]:
+def find_gaps(
+    profile: RayProfile, opening: NDArray[np.bool_], *, px: float, apart: float, full: float = 0.85, worn: float = 8.0
+) -> NDArray[np.intp]:
     """First and last ray of the lesion's gap in each slice.
 
     Parameters
@@ -90,9 +92,13 @@ def find_gaps(profile: RayProfile, opening: NDArray[np.bool_], *, thin: float = 
     profile : RayProfile
     opening : ndarray of bool, shape (P, R, C)
         Where the lesion crosses each slice.
-    thin : float
-        Next to the opening, rays whose bone is thinner than this fraction of the slice's usual thickness belong to
-        the gap: bevelled rims, partial loss.
+    px, apart : float
+        mm per pixel, and between slices.
+    full : float
+        Next to the hole, bone thinner than this fraction of the usual thickness belongs to the gap: bevelled or worn
+        rims, and slices of partial loss (the paper's Fig. 6), which have no hole of their own.
+    worn : float
+        mm beside the hole that may be worn.
 
     Returns
     -------
@@ -100,20 +106,42 @@ def find_gaps(profile: RayProfile, opening: NDArray[np.bool_], *, thin: float = 
         -1 where the slice has no gap.
     """
     thickness = profile.outer - profile.inner
-    usual = np.nanmedian(thickness)
-    free = np.isnan(thickness) | (thickness < thin * usual)
-    crossed = _crossed(profile, opening)
+    ray_apart = np.nanmedian(profile.outer) * (profile.angles[1] - profile.angles[0]) * px
+    free = np.isnan(thickness)
+    hole = _connected(free, _crossed(profile, opening) & free)
+    away = ndimage.distance_transform_edt(~hole, sampling=(apart, ray_apart))
+    usual = _usual_thickness(thickness, (away > worn) & (away < worn + 20) & ~free)
+    missing = _connected(hole | ((thickness < full * usual) & (away <= worn)), hole)
     gap = np.full((len(free), 2), -1)
-    for i in np.flatnonzero((crossed & np.isnan(thickness)).any(axis=1)):
-        rays = np.flatnonzero(crossed[i] & np.isnan(thickness[i]))
-        labels, _ = ndimage.label(free[i])
-        hit = np.flatnonzero(np.isin(labels, labels[rays]))
-        gap[i] = hit[0], hit[-1]
+    rows = np.flatnonzero(missing.any(axis=1))
+    gap[rows, 0] = missing[rows].argmax(axis=1)
+    gap[rows, 1] = missing.shape[1] - 1 - missing[rows, ::-1].argmax(axis=1)
     return gap
 
 
+def _connected(mask: NDArray[np.bool_], seeds: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The parts of a mask that hold a seed."""
+    labels, _ = ndimage.label(mask)
+    kept = np.unique(labels[seeds])
+    return np.isin(labels, kept[kept > 0])
+
+
+def _usual_thickness(thickness: NDArray[np.float64], around: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Plane through the thickness of the sound bone around the hole, continued across it, shape (P, K), px."""
+    row, ray = np.nonzero(around)
+    basis = np.stack([np.ones(len(row)), row, ray], axis=1)
+    values = thickness[row, ray]
+    weight = np.ones(len(row))
+    for _ in range(5):
+        plane = np.linalg.lstsq(basis * weight[:, None], values * weight, rcond=None)[0]
+        residual = values - basis @ plane
+        weight = 1 / np.maximum(1, np.abs(residual) / (1.4826 * np.median(np.abs(residual)) + 1e-6))
+    rows, rays = np.ogrid[: thickness.shape[0], : thickness.shape[1]]
+    return plane[0] + plane[1] * rows + plane[2] * rays
+
+
 def fit_rims(
-    profile: RayProfile, gap: NDArray[np.intp], *, skip: float, reach: float, order: int = 1, n_points: int = 40
+    profile: RayProfile, gap: NDArray[np.intp], *, skip: float, reach: float, order: int = 2, n_points: int = 40
 ) -> RimFits:
     """Fit both boundaries beside the gap and carry position and tangent to the first fitted point.
 
@@ -124,7 +152,8 @@ def fit_rims(
     skip, reach : float
         Arc lengths on the boundary, px: left out next to the gap, and fitted after that.
     order : int
-        1: radius linear in the angle, an arc about the head's axis where it is constant. 2: with its bend.
+        1: radius linear in the angle, an arc about the head's axis where it is constant. 2: with its bend, so that
+        the tangent at the rim is not that of the middle of the neighbourhood.
     n_points : int
         Points sampled over `reach`.
 

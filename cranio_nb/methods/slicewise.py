@@ -101,7 +101,7 @@ def design(
     axial: bool = False,
     skeleton: bool = False,
     skip: float = 2.0,
-    reach: float = 20.0,
+    reach: float = 12.0,
     pressure: float | None = None,
     n_snaxels: int = 41,
     tension: float = 1.0,
@@ -248,7 +248,7 @@ def _by_rays(
     angle = np.arctan2(col - centre[1], centre[0] - row)
     angles = np.arange(angle.min() - _SIDE, angle.max() + _SIDE, _ANGLE_STEP)
     profile = rays.look(grid.voxels, centre, angles, px=float(grid.spacing[1]))
-    gap = rays.find_gaps(profile, opening.voxels)
+    gap = rays.find_gaps(profile, opening.voxels, px=float(grid.spacing[1]), apart=float(grid.spacing[0]))
     rims = rays.fit_rims(profile, gap, skip=skip, reach=reach)
     tangents = rays.share_tangents(rims.tangents, coupling)
     results = []
