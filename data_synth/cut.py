@@ -114,8 +114,9 @@ class _Vault:
         inverse = np.linalg.inv(self.affine[:3, :3])
         start = inverse @ (self.centre - self.affine[:3, 3])
         hit = np.empty((len(directions), radii.size), bool)
-        for ray, step in enumerate(directions @ inverse.T):
-            hit[ray] = self._bone_at(np.rint(start + radii[:, None] * step).astype(int))
+        for some in np.array_split(np.arange(len(directions)), 1 + len(directions) // 100):
+            steps = directions[some] @ inverse.T
+            hit[some] = self._bone_at(np.rint(start + radii[:, None] * steps[:, None]).astype(int))
         return _first_run(hit, radii)
 
     def add_part(self, cutter: Cutter, parts: NDArray[np.float32]) -> None:
@@ -132,11 +133,10 @@ class _Vault:
         parts[at] = np.maximum(parts[at], part)
 
     def _bone_at(self, index: NDArray[np.intp]) -> Mask:
-        """Bone at voxel indices (n, 3); none outside the volume."""
-        inside = ((index >= 0) & (index < self.bone.shape)).all(1)
-        found = np.zeros(len(index), bool)
-        found[inside] = self.bone[tuple(index[inside].T)]
-        return found
+        """Bone at voxel indices (..., 3); none outside the volume."""
+        plane, row, col = (np.clip(index[..., i], 0, n - 1) for i, n in enumerate(self.bone.shape))
+        inside = ((index >= 0) & (index < self.bone.shape)).all(-1)
+        return self.bone[plane, row, col] & inside
 
     def _near(self, cutter: Cutter) -> NDArray[np.intp]:
         """Indices (n, 3) of the voxels in the cutter's cone, with a margin of a few mm, 30 to 150 mm away."""

@@ -101,7 +101,7 @@ class _Plane:
             middle = (low + high) / 2
             inside = self.depth(start + middle[..., None] * ray) > 0
             low, high = np.where(inside, middle, low), np.where(inside, high, middle)
-        for _ in range(4):
+        for _ in range(3):
             p = start + low[..., None] * ray
             low = low + self.depth(p) / (self.head.gradients(p)[self.surface] * ray).sum(-1)
         return start + low[..., None] * ray
@@ -170,7 +170,7 @@ def _gap(plane: _Plane, defect: int) -> Gap | None:
     if plane.depth(plane.frame()[0]) <= 0:
         return None
     step = 2 * np.pi / _N_RAYS
-    missing = plane.missing(np.arange(_N_RAYS) * step, defect) > 0
+    missing = plane.missing(np.arange(0.0, _N_RAYS) * step, defect) > 0
     if not missing.any() or missing.all():
         return None
     first, last = _widest_run(missing)
@@ -179,8 +179,8 @@ def _gap(plane: _Plane, defect: int) -> Gap | None:
 
 def _crossings(plane: _Plane, defect: int, brackets: Array) -> Array:
     """Angles (n,) where the cutter's rim crosses the curve, between brackets (n, 2) from outside to inside it."""
-    share = np.linspace(0, 1, 33)
-    for _ in range(6):
+    share = np.linspace(0, 1, 65)
+    for _ in range(4):
         angles = brackets[:, :1] + share * np.diff(brackets)
         inside = plane.missing(angles, defect) > 0
         inside[:, -1] = True

@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from data_synth import DEFECTS, SIZES, phantom_case, scan
+from data_synth import SIZES, phantom_case, scan
 
 
-@pytest.mark.parametrize("defect", DEFECTS)
+@pytest.mark.parametrize("defect", ["unilateral", "ragged", "partial", "multiple", "near_base"])
 def test_bone_and_implant_make_the_complete_skull(defect):
     case = phantom_case("tiny", defect, 7)
     whole = scan(replace(case.head, cutters=()), case.affine, case.bone.shape)[1]
