@@ -51,8 +51,8 @@ def series(
     made = []
     for k, (plane, height) in enumerate(zip(hu, at, strict=True)):
         ds = _common(uids, k)
-        ds.ImageOrientationPatient = [f"{v:.12g}" for v in iop]
-        ds.ImagePositionPatient = [f"{v:.12g}" for v in np.array(list(origin)) + height * along]
+        ds.ImageOrientationPatient = [f"{v:.10g}" for v in iop]
+        ds.ImagePositionPatient = [f"{v:.10g}" for v in np.array(list(origin)) + height * along]
         ds.PixelSpacing = list(spacing)
         stored = np.rint((plane.astype(float) - intercept) / slope).astype(np.int64)
         set_pixels(ds, stored, signed=signed, bits=bits)

@@ -92,14 +92,15 @@ def missing_gaps(heights: NDArray[np.float64], instances: list[int | None]) -> l
     """Gaps (index of the slice below) that look like slices gone, rather than like a scan with two slice distances.
 
     A gap is suspect where it is over 1.5 times the median of the three gaps on each side, or where the slice numbers
-    jump with it while the others run by one.
+    jump just as far while others run by one.
     """
     gaps = np.diff(heights)
     local = np.array([np.median(gaps[max(i - 3, 0) : i + 4]) for i in range(len(gaps))])
     suspect = gaps > 1.5 * local
     if all(n is not None for n in instances) and len(gaps):
         jumps = np.array([abs(b - a) for a, b in pairwise(n for n in instances if n is not None)])
-        suspect |= (jumps > 1) & (gaps > 1.25 * gaps.min()) & (np.median(jumps) == 1)
+        times = np.rint(gaps / gaps.min())
+        suspect |= (jumps > 1) & (jumps == times) & (jumps.min() == 1)
     return [int(i) for i in np.flatnonzero(suspect)]
 
 
