@@ -78,7 +78,7 @@ def axes_of(orientation: Vector) -> tuple[Vector, Vector, Vector]:
     rows = rows - (rows @ cols) * cols
     rows = rows / np.linalg.norm(rows)
     normal = np.cross(cols, rows)
-    return cols, rows, normal * np.sign(normal[np.abs(normal).argmax()])
+    return cols, rows, normal * np.sign(normal[np.abs(normal).argmax()]) + 0.0
 
 
 def check_geometry(headers: list[SliceHeader]) -> None:
@@ -126,6 +126,7 @@ def build_stack(headers: list[SliceHeader]) -> Stack:
     origin, direction = _line(positions, heights)
     spacing = np.asarray(ordered[0].spacing, float)
     shear = direction - (direction @ normal) * normal
+    shear[np.abs(shear) * heights[-1] < 1e-6] = 0  # rounding of the fit
     errors = _corner_errors(ordered, origin + heights[:, None] * direction, (cols, rows), spacing)
     worst = int(errors.argmax())
     if errors[worst] > CORNER_TOL:
