@@ -1,9 +1,15 @@
-"""Where the tests find real scans, and how they say that there are none."""
+"""Where the tests find real scans, and how they say that there are none; phantoms and shapes that many tests share."""
 
 import os
+from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+from cranio_nb.volume import Volume
+from data_synth import Case, phantom_case
 
 
 @pytest.fixture(scope="session")
@@ -13,3 +19,41 @@ def real_data() -> Path:
     if not folder:
         pytest.skip("CRANIO_NB_DATA names no folder of real scans")
     return Path(folder)
+
+
+@pytest.fixture(scope="session")
+def phantom() -> Callable[..., Case]:
+    """`phantom(defect, seed)`: the tiny phantom, made once; its arrays are read-only."""
+
+    @cache
+    def make(defect: str = "unilateral", seed: int = 0) -> Case:
+        case = phantom_case("tiny", defect, seed)
+        for array in (case.hu, case.bone, case.implant, case.affine):
+            array.setflags(write=False)
+        return case
+
+    return make
+
+
+@pytest.fixture(scope="session")
+def skull(phantom) -> Callable[..., Volume]:
+    """`skull(defect, seed)`: the bone left in the tiny phantom, by voxel centres."""
+    return lambda defect="unilateral", seed=0: Volume(phantom(defect, seed).bone, phantom(defect, seed).affine)
+
+
+@pytest.fixture(scope="session")
+def ring() -> Callable[..., np.ndarray]:
+    """`ring(inner, outer, half_gap=..., towards=...)`: a slice with an annulus that lacks a sector.
+
+    Radii in px about `centre` (row, col); angles in degrees, 0 up the slice (against the rows), growing towards the
+    columns.
+    """
+
+    def draw(inner, outer, *, half_gap=0.0, towards=0.0, centre=(100.0, 100.0), shape=(201, 201)):
+        row, col = np.indices(shape, dtype=float)
+        row, col = row - centre[0], col - centre[1]
+        radius = np.hypot(row, col)
+        off = (np.degrees(np.arctan2(col, -row)) - towards + 180) % 360 - 180
+        return (radius >= inner) & (radius <= outer) & ~(np.abs(off) < half_gap)
+
+    return draw
