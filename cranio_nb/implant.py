@@ -129,7 +129,7 @@ def clearance(patch: Volume, bone: Volume, mm: float) -> Volume:
     box = _box_around(patch, reach + 1)
     steps = np.stack(np.meshgrid(*[np.arange(-r, r + 1) for r in reach], indexing="ij"), axis=-1)
     gap = np.linalg.norm(np.maximum(np.abs(steps) - 1, 0) * bone.spacing, axis=-1)
-    near = ndimage.binary_dilation(bone.voxels[box], structure=gap < mm)
+    near = ndimage.binary_dilation(bone.voxels[box], structure=gap < mm - 1e-6)
     kept = np.zeros(patch.shape, bool)
     kept[box] = patch.voxels[box] & ~near
     return patch.with_voxels(kept)

@@ -142,7 +142,7 @@ def _keep_volume(x: NDArray, raw: NDArray, faces: NDArray[np.intp], grid: Volume
         mesh = Mesh(grid.to_world(x), faces)
         area = _vertex_areas(mesh)
         normal = area / np.linalg.norm(area, axis=1, keepdims=True).clip(1e-12)
-        lift = (wanted - mesh.volume) / np.einsum("vd,vd->", area, normal)
+        lift = (wanted - mesh.volume) / max(np.einsum("vd,vd->", area, normal), 1e-12)
         x = np.clip(grid.to_voxel(mesh.vertices + lift * normal), raw - _HALF_VOXEL, raw + _HALF_VOXEL)
     return x
 
