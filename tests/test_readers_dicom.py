@@ -204,8 +204,9 @@ def test_each_slice_is_rescaled_by_its_own_slope(tmp_path: Path) -> None:
         ds.RescaleIntercept = -1024 - k
         stored = np.frombuffer(ds.PixelData, "<u2").reshape(ds.Rows, ds.Columns)
         set_pixels(ds, stored.astype(int) + k)
-    volume, _ = read_ct(save(tmp_path / "scan", datasets))
+    volume, report = read_ct(save(tmp_path / "scan", datasets))
     np.testing.assert_array_equal(volume.voxels, hu)
+    assert "RescaleVaries" in {f.code for f in report.findings}
 
 
 def test_broken_slopes_give_real_hu(tmp_path: Path) -> None:

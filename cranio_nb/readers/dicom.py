@@ -132,6 +132,12 @@ def _remarks(stack: Stack) -> list[Finding]:
     if any(h.photometric == "MONOCHROME1" for h in headers):
         message = "The pixels are meant to be shown inverted; HU are not."
         findings.append(Finding("Monochrome1", "info", message, {}))
+    if len({(h.slope, h.intercept) for h in headers}) > 1:
+        message = "The slices have different rescale slopes or intercepts; each was given its own."
+        findings.append(Finding("RescaleVaries", "warning", message, {}))
+    if len({(h.bits, h.signed, h.photometric) for h in headers}) > 1:
+        message = "The slices store their pixels in different ways; each was read in its own."
+        findings.append(Finding("PixelFormatVaries", "warning", message, {}))
     units = {h.rescale_type.upper() for h in headers} - {"", "HU"}
     if units:
         findings.append(Finding("RescaleType", "warning", "The rescaled values are not declared to be HU.", {}))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydicom.dataset import Dataset
 
-from .dicom_scan import PixelPlace
+from .dicom_scan import PixelPlace, refusing
 
 Vector = NDArray[np.float64]
 
@@ -64,7 +64,18 @@ class SliceHeader:
 
 
 def slice_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
-    """One header per image: a classic file holds one, a multi-frame file one per frame, other files none."""
+    """One header per image: a classic file holds one, a multi-frame file one per frame, other files none.
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptDicom`` where the elements cannot be made sense of.
+    """
+    with refusing(file):
+        return _slice_headers(dataset, place, file)
+
+
+def _slice_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
     if "Rows" not in dataset or "Columns" not in dataset:
         return []
     frames = int(dataset.get("NumberOfFrames") or 1)

@@ -9,6 +9,8 @@ import io
 import struct
 import warnings
 import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
@@ -87,16 +89,23 @@ def scan(path: Path, file: int) -> tuple[Dataset, PixelPlace | None] | None:
     with open(path, "rb") as stream:
         if not looks_like_dicom(stream.read(136)):
             return None
-        try:
-            with warnings.catch_warnings():
-                # odd values are judged later, when it is known whether they matter
-                warnings.simplefilter("ignore")
-                return _scan(stream, path, file)
-        except InputRefused:
-            raise
-        except Exception as error:
-            # a broken file may raise anything: here it becomes one sentence, without the file's own words
-            raise corrupt(file, f"cannot be parsed ({type(error).__name__})") from None
+        with refusing(file):
+            return _scan(stream, path, file)
+
+
+@contextmanager
+def refusing(file: int) -> Iterator[None]:
+    """Turn whatever the parsing of a file raises into one sentence that names the file by its index."""
+    try:
+        with warnings.catch_warnings():
+            # odd values are judged later, when it is known whether they matter
+            warnings.simplefilter("ignore")
+            yield
+    except InputRefused:
+        raise
+    except Exception as error:
+        # a broken file may raise anything; its own words stay inside
+        raise corrupt(file, f"cannot be parsed ({type(error).__name__})") from None
 
 
 def corrupt(file: int, what: str, code: str = "CorruptDicom") -> InputRefused:
