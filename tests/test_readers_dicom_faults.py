@@ -1,6 +1,7 @@
 """Faulty DICOM folders: every one is refused by its code, or recovered with a finding; none is silently wrong."""
 
 import copy
+import json
 import os
 import struct
 import zlib
@@ -34,6 +35,8 @@ def refusal(folder: Path, **options: object) -> InputRefused:
 
 
 def codes(report: LoadReport) -> set[str]:
+    """The findings' codes; whatever they hold can be stored as JSON."""
+    json.dumps([finding.values for finding in report.findings], allow_nan=False)
     return {finding.code for finding in report.findings}
 
 

@@ -51,7 +51,7 @@ def read_dicom(
     voxels, more = _voxels(stack, mask, allow, progress)
     findings += [*more, *_remarks(stack), *plan.findings]
     voxels, affine, more = _upright(voxels, stack, plan)
-    return _finish(voxels, affine, stack.corner_error, tuple(findings + more))
+    return _finish(voxels, affine, plan.corner_error, tuple(findings + more))
 
 
 def _all_headers(path: Path) -> tuple[list[SliceHeader], list[Finding]]:

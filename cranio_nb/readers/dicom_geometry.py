@@ -42,8 +42,6 @@ class Stack:
         mm along the normal, from 0.
     shear : ndarray, shape (3,)
         mm that a slice slides in its own plane for each mm of height; zero in an upright stack.
-    corner_error : float
-        Largest distance, in mm, between a header's corner and this stack's.
     """
 
     headers: tuple[SliceHeader, ...]
@@ -54,12 +52,18 @@ class Stack:
     spacing: Vector
     heights: Vector
     shear: Vector
-    corner_error: float
 
     @property
     def extent(self) -> float:
         """Mm from the lowest to the highest slice."""
         return float(self.heights[-1])
+
+    def corner_errors(self, heights: Vector) -> Vector:
+        """Distance in mm, shape (N,), of each slice's worst corner from where the stack puts it at given heights."""
+        origins = self.origin + heights[:, None] * (self.normal + self.shear)
+        model = _corners(origins, self.along_cols, self.along_rows, self.spacing, self.headers[0])
+        own = np.stack([_own_corners(header) for header in self.headers])
+        return np.linalg.norm(own - model, axis=-1).max(axis=-1)
 
 
 def axes_of(orientation: Vector) -> tuple[Vector, Vector, Vector]:
@@ -127,11 +131,12 @@ def build_stack(headers: list[SliceHeader]) -> Stack:
     spacing = np.asarray(ordered[0].spacing, float)
     shear = direction - (direction @ normal) * normal
     shear[np.abs(shear) * heights[-1] < 1e-6] = 0  # rounding of the fit
-    errors = _corner_errors(ordered, origin + heights[:, None] * direction, (cols, rows), spacing)
+    stack = Stack(tuple(ordered), origin, cols, rows, normal, spacing, heights, shear)
+    errors = stack.corner_errors(heights)
     worst = int(errors.argmax())
     if errors[worst] > CORNER_TOL:
         raise bad_geometry(f"Slice {worst} lies {errors[worst]:.2f} mm off the straight stack of the others.")
-    return Stack(tuple(ordered), origin, cols, rows, normal, spacing, heights, shear, float(errors[worst]))
+    return stack
 
 
 def _line(positions: Vector, heights: Vector) -> tuple[Vector, Vector]:
@@ -141,22 +146,17 @@ def _line(positions: Vector, heights: Vector) -> tuple[Vector, Vector]:
     return origin, direction
 
 
-def _corner_errors(headers: list[SliceHeader], origins: Vector, axes: tuple[Vector, Vector], spacing: Vector) -> Vector:
-    """Per slice, the largest distance of its four corners by its header from those by the stack, mm."""
-    model = _corners(origins, *axes, spacing, headers[0])
-    errors = np.empty(len(headers))
-    for i, header in enumerate(headers):
-        orientation = _orientation(header)
-        own = _corners(header.position, orientation[:3], orientation[3:], header.spacing, header)
-        errors[i] = np.linalg.norm(own - model[i], axis=-1).max()
-    return errors
-
-
 def _corners(origin: Vector | None, cols: Vector, rows: Vector, spacing: Vector | None, header: SliceHeader) -> Vector:
     """Corners of slices whose first pixels are at `origin`, shape (..., 4, 3)."""
     down, right = np.asarray(spacing) * (header.rows - 1, header.cols - 1)
     steps = np.array([[0, 0], [0, right], [down, 0], [down, right]]) @ np.stack([rows, cols])
     return np.asarray(origin)[..., None, :] + steps
+
+
+def _own_corners(header: SliceHeader) -> Vector:
+    """Corners of one slice by its own header, shape (4, 3)."""
+    iop = _orientation(header)
+    return _corners(header.position, iop[:3], iop[3:], header.spacing, header)
 
 
 def _orientation(header: SliceHeader) -> Vector:

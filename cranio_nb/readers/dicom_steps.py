@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from .dicom_geometry import CORNER_TOL, MAX_STEP, MAX_STEP_RATIO, MIN_SLICES, Stack, bad_geometry
 from .dicom_scan import MAX_SLICES
-from .regrid import even_heights, is_even, missing_gaps
+from .regrid import even_heights, missing_gaps
 from .report import Finding
 
 _MIN_STEP = 0.05
@@ -20,10 +20,22 @@ _REMEDY = "A head CT in thin slices, up to 2 mm apart, is best."
 
 @dataclass(frozen=True, eq=False)
 class Plan:
-    """Even steps of `step` mm; `wanted` are the heights to interpolate at, or None where the slices are even."""
+    """How the slices become planes.
+
+    Parameters
+    ----------
+    step : float
+        mm between planes.
+    wanted : ndarray or None
+        Heights in mm to interpolate at; None where the slices are the planes.
+    corner_error : float
+        Largest distance in mm between a slice's corner by its header and by the affine.
+    findings : list of Finding
+    """
 
     step: float
     wanted: NDArray[np.float64] | None
+    corner_error: float
     findings: list[Finding]
 
 
@@ -55,8 +67,10 @@ def plan_steps(stack: Stack, allow: Collection[str] = ()) -> Plan:
     if gaps.min() < _MIN_STEP:
         raise bad_geometry(f"Two slices are only {gaps.min():.3f} mm apart.")
     findings = _numbering(stack) + _thickness(stack, float(np.median(gaps)))
-    if is_even(stack.heights, CORNER_TOL):
-        return Plan(stack.extent / (len(stack.headers) - 1), None, findings)
+    step = stack.extent / (len(stack.headers) - 1)
+    error = float(stack.corner_errors(step * np.arange(len(gaps) + 1, dtype=float)).max())
+    if error <= CORNER_TOL and np.abs(gaps - step).max() <= max(0.02, 0.005 * step):
+        return Plan(step, None, error, findings)
     return _even_plan(stack, gaps, gone, findings)
 
 
@@ -74,7 +88,7 @@ def _even_plan(stack: Stack, gaps: NDArray[np.float64], gone: list[int], finding
     findings = [*findings, Finding("UnevenSpacing", "corrected", message, values)]
     if gone:
         findings.append(_filled(stack, gone, wanted))
-    return Plan(step, wanted, findings)
+    return Plan(step, wanted, float(stack.corner_errors(stack.heights).max()), findings)
 
 
 def _filled(stack: Stack, gone: list[int], wanted: NDArray[np.float64]) -> Finding:

@@ -20,6 +20,7 @@ from .regrid import slide_slices
 from .report import Finding, LoadReport
 
 MAX_VOXELS = 2**30
+_MAX_REST = 2**26  # bytes
 _SPACING_RANGE = (0.1, 10.0)  # mm
 _CORNER_TOL = 0.05  # mm
 
@@ -76,6 +77,23 @@ def read_exactly(stream: BinaryIO, count: int) -> bytearray:
         view[filled : filled + len(part)] = part
         filled += len(part)
     return content
+
+
+def check_rest(stream: BinaryIO) -> list[Finding]:
+    """Read on to the end, where packed data hold their checksum; what is left there is remarked upon.
+
+    No more than `_MAX_REST` bytes are inflated for it.
+    """
+    rest = 0
+    while rest <= _MAX_REST:
+        part = stream.read(2**22)
+        if not part:
+            break
+        rest += len(part)
+    if not rest:
+        return []
+    message = "The file holds more bytes than its header declares voxels; they were left."
+    return [Finding("BytesLeft", "warning", message, {"at_least": rest})]
 
 
 def spatial_shape(sizes: list[int]) -> tuple[int, int, int]:

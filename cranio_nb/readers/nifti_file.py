@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import warnings
+import zlib
 from collections.abc import Collection
 from typing import Any, BinaryIO, cast
 
@@ -11,7 +12,7 @@ import numpy as np
 
 from ..errors import InputRefused
 from ..volume import Affine
-from .images import Image, no_orientation, read_exactly, spatial_shape
+from .images import Image, check_rest, no_orientation, read_exactly, spatial_shape
 from .report import Finding
 
 _MM_PER_UNIT = {0: 1.0, 1: 1000.0, 2: 1.0, 3: 1e-3}  # unknown, metre, mm, micrometre (xyzt_units & 7)
@@ -39,12 +40,13 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
             raise _corrupt(f"its voxels are said to start at byte {offset}")
         data.seek(offset)
         raw = np.frombuffer(read_exactly(data, int(np.prod(shape)) * dtype.itemsize), dtype)
-    except (EOFError, OSError) as error:
+        rest = check_rest(data)
+    except (EOFError, OSError, zlib.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
     affine, findings = _affine(header, allow)
     slope, intercept, more = _scaling(header)
     native = raw.reshape(shape, order="F").astype(dtype.newbyteorder("="), copy=False)
-    return Image("NIfTI", native, affine, slope, intercept, tuple(findings + more))
+    return Image("NIfTI", native, affine, slope, intercept, tuple(findings + more + rest))
 
 
 def _header(data: BinaryIO) -> Any:
@@ -101,7 +103,18 @@ def _affine(header: Any, allow: Collection[str]) -> tuple[Affine, list[Finding]]
         findings.append(Finding("NoUnits", "info", "The file does not state its unit of length: mm was taken.", {}))
     affine = np.array(affine, float)
     affine[:3] *= _MM_PER_UNIT[unit]
-    return _LPS @ affine, findings + _disagreement(header)
+    return _LPS @ affine, findings + _disagreement(header) + _sizes_disagree(header)
+
+
+def _sizes_disagree(header: Any) -> list[Finding]:
+    """A remark where the sform gives the voxels another size than pixdim does."""
+    if int(header["sform_code"]) <= 0:
+        return []
+    pixdim, spacing = np.asarray(header["pixdim"][1:4], float), np.linalg.norm(header.get_sform()[:3, :3], axis=0)
+    if np.allclose(pixdim, spacing, rtol=0.01):
+        return []
+    message = "The file's sform and pixdim give different voxel sizes; the sform was taken."
+    return [Finding("TwoSpacings", "warning", message, {"pixdim": pixdim.tolist()})]
 
 
 def _disagreement(header: Any) -> list[Finding]:

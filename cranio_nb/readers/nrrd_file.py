@@ -5,6 +5,7 @@ from __future__ import annotations
 import bz2
 import gzip
 import warnings
+import zlib
 from collections.abc import Collection
 from typing import Any, BinaryIO, cast
 
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..volume import Affine
-from .images import Image, no_orientation, read_exactly, spatial_shape
+from .images import Image, check_rest, no_orientation, read_exactly, spatial_shape
 from .report import Finding
 
 # sign of (x, y, z) from the file's frame to LPS
@@ -61,10 +62,11 @@ def read_nrrd(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
         raise _unsupported(f"has {len(space)} axes in space and others besides", "BadShape")
     shape = spatial_shape([sizes[i] for i in space])
     dtype = _dtype(header)
-    raw = np.frombuffer(_voxel_bytes(stream, header, int(np.prod(shape)) * dtype.itemsize), dtype)
+    content, rest = _voxel_bytes(stream, header, int(np.prod(shape)) * dtype.itemsize)
+    raw = np.frombuffer(content, dtype)
     affine, findings = _affine(header, [directions[i] for i in space] if directions else None, allow)
     native = raw.reshape(shape, order="F").astype(dtype.newbyteorder("="), copy=False)
-    return Image("NRRD", native, affine, findings=tuple(findings))
+    return Image("NRRD", native, affine, findings=tuple(findings + rest))
 
 
 def _header(stream: BinaryIO) -> dict[str, Any]:
@@ -82,6 +84,11 @@ def _header(stream: BinaryIO) -> dict[str, Any]:
         raise
     except Exception as error:
         raise _corrupt(f"its header cannot be parsed ({type(error).__name__})") from None
+    start = stream.tell()
+    stream.seek(0)
+    lines = [line for line in stream.read(start).split(b"\n") if not line.startswith(b"#") and b":=" not in line]
+    if not b"".join(lines).isascii():
+        raise _corrupt("its header holds characters that do not belong there")
     if "data file" in header or "datafile" in header:
         message = "The voxels of this NRRD file lie in a second file."
         raise InputRefused("UnsupportedFile", message, "Give a single .nrrd file that holds its voxels.")
@@ -90,7 +97,8 @@ def _header(stream: BinaryIO) -> dict[str, Any]:
     return header
 
 
-def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> bytearray:
+def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[bytearray, list[Finding]]:
+    """The declared bytes of voxels, and a remark where there are more."""
     encoding = str(header["encoding"]).lower()
     skips = [int(header.get(name, 0)) for name in ("line skip", "lineskip", "byte skip", "byteskip")]
     if encoding not in _ENCODINGS or any(skips):
@@ -102,8 +110,8 @@ def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> bytear
     elif encoding in ("bzip2", "bz2"):
         data = cast(BinaryIO, bz2.BZ2File(stream))
     try:
-        return read_exactly(data, count)
-    except (EOFError, OSError) as error:
+        return read_exactly(data, count), check_rest(data)
+    except (EOFError, OSError, zlib.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
 
 

@@ -57,18 +57,21 @@ def check_hu(hu: NDArray, allow: Collection[str] = ()) -> list[Finding]:
         ``ImplausibleHU`` where the darkest voxels are not air, or most voxels are bone.
     """
     sample = _sample(hu)
-    low, middle, high = (float(v) for v in np.percentile(sample, (1, 50, 99.9)))
-    values = {"p1": low, "median": middle, "p99_9": high, "max": float(hu.max())}
+    dark = sample[sample < -500]
+    air = float(np.median(dark)) if dark.size >= 0.005 * sample.size else float("nan")
+    middle, high = (float(v) for v in np.percentile(sample, (50, 99.9)))
+    values = {"median": middle, "p99_9": high, "max": float(hu.max())}
     wrong = ""
-    if not -1100 <= low <= -900:
-        wrong = f"the darkest voxels are near {low:.0f} HU, where air at -1000 HU is expected"
+    if not -1100 <= air <= -900:
+        found = "there is no air" if np.isnan(air) else f"the darkest voxels are near {air:.0f} HU"
+        wrong = f"{found}, where air at -1000 HU is expected"
     elif middle > 300:
         wrong = f"more than half of the voxels are above 300 HU (median {middle:.0f})"
     if wrong and "implausible_hu" not in allow:
         raise InputRefused(
             "ImplausibleHU",
             f"The values are not those of a CT in HU: {wrong}.",
-            "Check the rescale slope and intercept of the source, or allow implausible_hu.",
+            "Check the source's rescale, read it as a mask, or allow implausible_hu.",
         )
     findings = [Finding("ImplausibleHU", "warning", f"The values look unlike HU: {wrong}.", values)] if wrong else []
     if high <= 300:

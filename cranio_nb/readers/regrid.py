@@ -104,14 +104,6 @@ def missing_gaps(heights: NDArray[np.float64], instances: list[int | None]) -> l
     return [int(i) for i in np.flatnonzero(suspect)]
 
 
-def is_even(heights: NDArray[np.float64], tol: float) -> bool:
-    """Whether heights in mm run evenly: every gap, and every height from the straight line, within tolerance."""
-    step = (heights[-1] - heights[0]) / (len(heights) - 1)
-    gaps_agree = np.abs(np.diff(heights) - step).max() <= max(0.02, 0.005 * step)
-    drift = np.abs(heights - heights[0] - step * np.arange(len(heights))).max()
-    return bool(gaps_agree and drift <= tol)
-
-
 def _as(values: NDArray, dtype: np.dtype) -> NDArray:
     if dtype.kind == "b":
         return values >= 0.5
