@@ -380,6 +380,7 @@ UNCHANGED = {
     "inverted display": (edit(EVERY, PhotometricInterpretation="MONOCHROME1"), "Monochrome1"),
     "slices numbered from 5": (edit(0, InstanceNumber=40), "SliceNumbers"),
     "thin slices": (edit(EVERY, SliceThickness=0.5), "ThinSlices"),
+    "thick slices": (edit(EVERY, SliceThickness=10), "SmallSteps"),
     "another unit": (edit(EVERY, RescaleType="US"), "RescaleType"),
 }
 
@@ -480,3 +481,8 @@ def test_damaged_headers_are_refused_reported_or_harmless(tmp_path: Path) -> Non
             continue
         same = np.array_equal(volume.voxels, whole.voxels) and np.allclose(volume.affine, whole.affine)
         assert same or {f.severity for f in report.findings} - {"info"}
+
+
+def test_positions_in_centimetres_are_remarked_upon(tmp_path: Path) -> None:
+    _, report = read_ct(save(tmp_path / "scan", series(head(), step=STEP / 10)))
+    assert next(f for f in report.findings if f.code == "SmallSteps").severity == "warning"

@@ -127,12 +127,15 @@ def _numbers(stack: Stack) -> list[int]:
 
 
 def _thickness(stack: Stack, step: float) -> list[Finding]:
-    """A remark where slices are further apart than they are thick; a refusal where their numbers jump as well."""
-    thick = [h.thickness for h in stack.headers if h.thickness is not None and h.thickness > 0]
-    if not thick or step <= 1.5 * max(thick):
+    """Remarks where steps do not fit thickness and pixels; a refusal where slice numbers say that slices are gone."""
+    thick = max((h.thickness for h in stack.headers if h.thickness is not None and h.thickness > 0), default=step)
+    values = {"step_mm": step, "thickness_mm": thick, "pixel_mm": float(stack.spacing.min())}
+    message = f"Slices are {step:.2f} mm apart but {thick:.2f} mm thick"
+    if step < 0.2 * max(thick, values["pixel_mm"]):
+        message += f" with pixels of {values['pixel_mm']:.2f} mm: are the positions in mm?"
+        return [Finding("SmallSteps", "warning", message, values)]
+    if step <= 1.5 * thick:
         return []
-    message = f"Slices are {step:.2f} mm apart but {max(thick):.2f} mm thick"
     if _numbers(stack) and np.diff(_numbers(stack)).min() > 1:
         raise InputRefused("MissingSlices", f"{message}, and their numbers jump.", "Export the complete series again.")
-    values = {"step_mm": step, "thickness_mm": max(thick)}
     return [Finding("ThinSlices", "warning", f"{message}: there are gaps between them.", values)]
