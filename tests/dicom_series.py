@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import json
 import warnings
 from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
 import pydicom
+import pytest
 from pydicom.dataset import Dataset, FileMetaDataset
 from pydicom.uid import UID, ExplicitVRLittleEndian, generate_uid
+
+from cranio_nb.errors import InputRefused
+from cranio_nb.readers import LoadReport, read_ct
 
 CT_IMAGE = "1.2.840.10008.5.1.4.1.1.2"
 AXIAL = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -116,5 +121,39 @@ def edit(at: int | slice, **values: object) -> Callable[[list[Dataset]], None]:
                     del ds[name]
                 else:
                     setattr(ds, name, value)
+
+    return change
+
+
+def refusal(folder: Path, **options: object) -> InputRefused:
+    """The refusal of a folder; its text must give nothing away."""
+    with pytest.raises(InputRefused) as caught:
+        read_ct(folder, **options)
+    error = caught.value
+    for secret in (str(folder), "SECRET", "Nobody", "image0", "script", "Traceback"):
+        assert secret not in str(error)
+    assert error.message.endswith(".") and len(error.message) < 300
+    assert error.__cause__ is None
+    return error
+
+
+def codes(report: LoadReport) -> set[str]:
+    """The findings' codes; whatever they hold can be stored as JSON."""
+    json.dumps([finding.values for finding in report.findings], allow_nan=False)
+    return {finding.code for finding in report.findings}
+
+
+def drop(*indices: int) -> Callable[[list[Dataset]], None]:
+    def change(datasets: list[Dataset]) -> None:
+        for index in sorted(indices, reverse=True):
+            del datasets[index]
+
+    return change
+
+
+def chain(*edits: Callable[[list[Dataset]], None]) -> Callable[[list[Dataset]], None]:
+    def change(datasets: list[Dataset]) -> None:
+        for one in edits:
+            one(datasets)
 
     return change
