@@ -1,0 +1,263 @@
+"""Designs -> pictures: slices with their curves, shaded views, distance maps. The only importer of matplotlib.
+
+Colours are those of Okabe and Ito, told apart by the colour-blind; lines differ in style as well. Every picture has a
+scale bar in mm. Functions take an axis and draw on it; `new_figure` makes one without any global state.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+from scipy import ndimage
+
+from . import features
+from .mesh import Mesh
+from .methods.slicewise import SlicedDesign, SliceResult
+from .render import Picture, Solid, render, view_axes
+
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+YELLOW, BLUE, VERMILLION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
+BONE, GREY = "#D8D2C4", "#6B6B6B"
+OUTER_COLOUR, INNER_COLOUR = BLUE, VERMILLION
+DPI = 110
+
+SIDES = {
+    "from the left": (1.0, 0.0, 0.0),
+    "from the right": (-1.0, 0.0, 0.0),
+    "from the front": (0.0, -1.0, 0.0),
+    "from the back": (0.0, 1.0, 0.0),
+    "from above": (0.0, 0.0, 1.0),
+}
+"""Directions from the head to the viewer, LPS."""
+
+_LETTERS = (("R", "L"), ("A", "P"), ("I", "S"))  # negative and positive end of each world axis
+_RIM = 14  # px left free around a view
+_AROUND = 12.0  # mm of slice shown around an opening
+
+
+def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
+    """A figure of given inches, all of it one empty axis, without touching any global state."""
+    figure = Figure(figsize=(width, height), dpi=DPI)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    return figure, axes
+
+
+def png(figure: Figure) -> bytes:
+    """A figure as PNG."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=figure.dpi, metadata={"Software": None})
+    return stream.getvalue()
+
+
+def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str = BLACK) -> None:
+    """Draw a bar of `length` data units in the lower left corner; the label says its length in mm.
+
+    Call it last, when the limits of the axis are set.
+    """
+    (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
+    x, y = x0 + 0.03 * (x1 - x0), y0 + 0.03 * (y1 - y0)
+    step = length * np.sign(x1 - x0)
+    ax.plot([x, x + step], [y, y], color=colour, lw=3, solid_capstyle="butt")
+    text = f"{length:g} mm" if label is None else label
+    ax.text(x, y + 0.02 * (y1 - y0), text, color=colour, fontsize=8, va="bottom", ha="left")
+
+
+def draw_slice(
+    ax: Axes, sliced: SlicedDesign, result: SliceResult, *, centre: ArrayLike | None = None, skeleton: bool = False
+) -> None:
+    """Draw a slice of a design: bone, its boundaries, ends, tangents, start and final curves, patch.
+
+    Parameters
+    ----------
+    ax : Axes
+        Axes in mm along columns and rows from the slice's first pixel.
+    sliced : SlicedDesign
+    result : SliceResult
+        One of ``sliced.slices``.
+    centre : array_like, shape (3,), optional
+        World mm of a point inside the head; without it no boundaries are drawn.
+    skeleton : bool
+        Boundaries by skeleton and hull, as the paper takes them; otherwise by their distance from the centre.
+    """
+    px = sliced.grid.spacing[1:]
+    bone, patch = sliced.grid.voxels[result.plane], sliced.patch.voxels[result.plane]
+    _fill(ax, bone, px, BONE)
+    _fill(ax, patch, px, SKY, alpha=0.55)
+    if centre is not None:
+        inside = sliced.grid.to_voxel(centre)[1:]
+        for points, colour in zip(_boundaries(bone, inside, skeleton), (OUTER_COLOUR, INNER_COLOUR), strict=True):
+            ax.plot(*_xy(points, px), ls="none", marker=".", ms=1.6, mew=0, color=colour)
+    for curve, start, colour in zip(result.curves, _starts(result), (OUTER_COLOUR, INNER_COLOUR), strict=False):
+        if len(start):
+            ax.plot(*_xy(start, px), color=colour, ls=(0, (4, 2)), lw=1.1)
+        ax.plot(*_xy(curve, px), color=colour, ls="-", lw=1.8)
+    for ends in result.ends:
+        _draw_ends(ax, ends.points, ends.tangents, px)
+    _frame(ax, sliced, result.plane)
+    scale_bar(ax, 20.0)
+
+
+def slice_figure(sliced: SlicedDesign, result: SliceResult, **options: Any) -> Figure:
+    """`draw_slice` on a new figure; options as there."""
+    figure, ax = new_figure(3.4, 2.5)
+    draw_slice(ax, sliced, result, **options)
+    return figure
+
+
+def _fill(ax: Axes, mask: NDArray[np.bool_], px: NDArray, colour: str, alpha: float = 1.0) -> None:
+    """Show a mask in one colour, clear elsewhere."""
+    rows, cols = mask.shape
+    extent = (-0.5 * px[1], (cols - 0.5) * px[1], (rows - 0.5) * px[0], -0.5 * px[0])
+    rgba = np.zeros((rows, cols, 4))
+    rgba[mask] = (*_rgb(colour), alpha)
+    ax.imshow(rgba, extent=extent, interpolation="nearest")
+
+
+def _starts(result: SliceResult) -> NDArray:
+    return result.start if len(result.start) == len(result.curves) else np.empty((len(result.curves), 0, 2))
+
+
+def _xy(points: NDArray, px: NDArray) -> tuple[NDArray, NDArray]:
+    """Slice (row, col) px -> x, y of the axes in mm."""
+    return points[:, 1] * px[1], points[:, 0] * px[0]
+
+
+def _draw_ends(ax: Axes, points: NDArray, tangents: NDArray, px: NDArray) -> None:
+    """Gap ends as rings, their tangents as arrows of 12 mm."""
+    for point, tangent in zip(points * px, tangents * px, strict=True):
+        tip = point + 12.0 * tangent / np.linalg.norm(tangent)
+        arrow = {"arrowstyle": "-|>", "color": GREEN, "lw": 1.3, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
+        ax.annotate("", xy=tip[::-1], xytext=point[::-1], arrowprops=arrow)
+    ax.plot(*_xy(points, px), ls="none", marker="o", ms=4.5, mfc="white", mec=BLACK, mew=1.0)
+
+
+def _boundaries(bone: NDArray[np.bool_], inside: NDArray, skeleton: bool) -> tuple[NDArray, NDArray]:
+    """Outer and inner boundary pixels of a slice, shape (n, 2) each."""
+    if skeleton:
+        try:
+            seen = features.slice_features(bone)
+            return seen.outer, seen.inner
+        except features.SliceProblem:
+            pass  # no skeleton to part them by: take the distance from the centre
+    edge = np.argwhere(bone & ~ndimage.binary_erosion(bone))
+    radius = np.hypot(*(edge - inside).T)
+    turn = np.arctan2(*(edge - inside).T)
+    ray = np.round((turn + np.pi) / 0.02).astype(int)
+    high, low = np.full(ray.max(initial=0) + 1, -np.inf), np.full(ray.max(initial=0) + 1, np.inf)
+    np.maximum.at(high, ray, radius)
+    np.minimum.at(low, ray, radius)
+    far = 2 * radius > high[ray] + low[ray]
+    return edge[far], edge[~far]
+
+
+def _frame(ax: Axes, sliced: SlicedDesign, plane: int) -> None:
+    """Set the limits to the opening's surroundings, the same for every slice of a lesion."""
+    px, shape = sliced.grid.spacing[1:], sliced.grid.shape[1:]
+    curves = [s.curves.reshape(-1, 2) for s in sliced.slices if s.curves.size]
+    points = np.concatenate([np.argwhere(sliced.opening.voxels.any(axis=0)), *curves]) * px
+    low = np.maximum(points.min(axis=0) - _AROUND, -0.5 * px)
+    high = np.minimum(points.max(axis=0) + _AROUND, (np.array(shape) - 0.5) * px)
+    middle, half = (low + high) / 2, (high - low) / 2
+    width, height = ax.get_window_extent().size
+    half = np.maximum(half, [half[1] * height / width, half[0] * width / height])
+    ax.set_xlim(middle[1] - half[1], middle[1] + half[1])
+    ax.set_ylim(middle[0] + half[0], middle[0] - half[0])
+
+
+def views_of(directions: Sequence[ArrayLike]) -> dict[str, NDArray[np.float64]]:
+    """Three directions to look from, by name: facing the largest opening, and two sides that show the openings.
+
+    Parameters
+    ----------
+    directions : sequence of array_like, shape (3,)
+        From the head's centre to each opening, LPS, the largest first.
+    """
+    towards = np.array(directions, float)
+    worth = {name: float(np.clip(towards @ side, 0, None).sum()) for name, side in SIDES.items()}
+    best = sorted(SIDES, key=lambda name: worth[name], reverse=True)[:2]
+    return {"facing the opening": towards[0], **{name: np.array(SIDES[name]) for name in best}}
+
+
+def view_figure(skull: Mesh, prosthesis: Mesh, towards: ArrayLike, *, px: float = 0.6) -> Figure:
+    """Skull and prosthesis, shaded, seen from a direction (from the head to the viewer, LPS)."""
+    solids = [Solid(prosthesis, _rgb(BLUE))]
+    if len(skull.faces):
+        solids.insert(0, Solid(skull, _rgb("#EDE7D8")))
+    picture = render(solids, towards, px=px)
+    figure, ax = _show(picture)
+    _letters(ax, view_axes(towards))
+    scale_bar(ax, 50.0 / px, "50 mm")
+    return figure
+
+
+def distance_figure(
+    whole: Mesh, surface: Mesh, distances: NDArray, towards: ArrayLike, top: float, *, px: float = 0.2
+) -> Figure:
+    """One side of a prosthesis, coloured by the distance of its nodes from the true surface; the rest is grey.
+
+    Parameters
+    ----------
+    whole, surface : Mesh
+        The prosthesis, and its side as an open surface.
+    distances : ndarray, shape (V,)
+        mm.
+    towards : array_like, shape (3,)
+        From the surface to the viewer, LPS.
+    top : float
+        mm at the upper end of the colour scale.
+    """
+    near = np.asarray(towards, float) / np.linalg.norm(towards) * 0.05  # mm: before the same faces of the whole
+    coloured = Solid(Mesh(surface.vertices + near, surface.faces), colour_scale(top).to_rgba(distances)[:, :3])
+    figure, ax = _show(render([Solid(whole, _rgb("#C9C9C9")), coloured], towards, px=px, shaded=False))
+    _letters(ax, view_axes(towards))
+    scale_bar(ax, 20.0 / px, "20 mm")
+    return figure
+
+
+def colour_scale(top: float) -> ScalarMappable:
+    """Distances from 0 to `top` mm -> cividis, which reads the same for the colour-blind."""
+    return ScalarMappable(Normalize(0.0, top), "cividis")
+
+
+def colour_bar_figure(top: float, label: str) -> Figure:
+    """The scale of distance maps."""
+    figure = Figure(figsize=(3.6, 0.62), dpi=DPI)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.05, 0.62, 0.9, 0.26))
+    bar = figure.colorbar(colour_scale(top), cax=axes, orientation="horizontal", extend="max")
+    bar.ax.tick_params(labelsize=8)
+    bar.set_label(label, fontsize=8)
+    return figure
+
+
+def _show(picture: Picture) -> tuple[Figure, Axes]:
+    """A rendered picture, one pixel for one, with a rim for letters and scale."""
+    rgb = np.pad(picture.rgb, ((_RIM, 2 * _RIM), (_RIM, _RIM), (0, 0)), constant_values=1)
+    height, width = rgb.shape[:2]
+    figure, ax = new_figure(width / DPI, height / DPI)
+    ax.imshow(rgb, interpolation="nearest", aspect="auto")
+    return figure, ax
+
+
+def _letters(ax: Axes, axes: NDArray[np.float64]) -> None:
+    """Name the patient's sides at the edges of a view: L, R, A, P, S, I."""
+    for x, y, direction in ((0.99, 0.5, axes[0]), (0.01, 0.5, -axes[0]), (0.5, 0.99, -axes[1])):
+        axis = int(np.argmax(np.abs(direction)))
+        letter = _LETTERS[axis][int(direction[axis] > 0)]
+        across, up = {0.99: "right", 0.01: "left"}.get(x, "center"), "top" if y > 0.9 else "center"
+        ax.text(x, y, letter, transform=ax.transAxes, ha=across, va=up, fontsize=9, color=GREY, weight="bold")
+
+
+def _rgb(colour: str) -> NDArray[np.float64]:
+    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)]) / 255
