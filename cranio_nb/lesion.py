@@ -22,6 +22,7 @@ _EYE_DEPTH = 85.0  # mm below the vertex: above the skull base, and the whole va
 _STEP = 1.5  # degrees between rays: 2 mm on the vault
 _SKY = 102.0  # degrees from the vertex down to which the vault is searched; further down lie orbits and base
 _BASE = 88.0  # degrees: an opening that lies wholly further down is an orbit, an ear canal, the base
+_THIN_RIM, _THIN_HOLE = 1.5, 30.0  # mm: a small hole whose rim is as thin as paper was not cut
 _NEAR, _FAR = 25.0, 140.0  # mm from the eye between which the vault lies
 
 
@@ -74,7 +75,7 @@ def find(bone: Volume, *, min_diameter: float = 8.0) -> tuple[Lesion, ...]:
         ``NoVault`` when the mask holds no skull vault.
     """
     sky = look(bone)
-    parts = openings(sky, min_diameter)
+    parts = [part for part in openings(sky, min_diameter) if not _worn_through(bone, sky, part)]
     if not parts:
         raise NoOpening("NoOpening", "The vault of this skull has no opening; there is nothing to close.")
     radius = _bridge(sky, parts)
@@ -137,7 +138,7 @@ def openings(sky: Sky, min_diameter: float = 8.0) -> list[NDArray[np.bool_]]:
     labels, n_parts = ndimage.label(grown, np.ones((3, 3)))
     parts = []
     for part in (labels == i for i in range(1, n_parts + 1)):
-        if sky.polar[part & core].min() > _BASE:
+        if np.min(sky.polar[part & core], initial=180.0) > _BASE:  # also a pocket beside the hole, without a core
             continue
         if not sky.seen[part].all():
             raise InputRefused(
@@ -185,6 +186,19 @@ def _bridge(sky: Sky, parts: list[NDArray[np.bool_]]) -> NDArray[np.float64]:
     for _ in range(200):
         radius[hole] = ndimage.uniform_filter(radius, 3)[hole]
     return radius
+
+
+def _worn_through(bone: Volume, sky: Sky, part: NDArray[np.bool_]) -> bool:
+    """Whether a small opening is a spot where thin bone fell below the threshold, rather than a cut one."""
+    typical = float(np.nanmedian(sky.radius[sky.polar <= 90]))
+    if 2 * np.sqrt(part.sum() / np.pi) * np.radians(_STEP) * typical > _THIN_HOLE:
+        return False
+    rim = ndimage.binary_dilation(part, iterations=2) & np.isfinite(sky.radius)
+    depths = np.arange(-14.0, 1.5, 0.25)
+    points = sky.eye + sky.directions[rim][:, None, :] * (sky.radius[rim][:, None] + depths)[..., None]
+    index = np.clip(np.rint(bone.to_voxel(points)).astype(np.intp), 0, np.array(bone.shape) - 1)
+    thickness = bone.voxels[tuple(np.moveaxis(index, -1, 0))].sum(axis=1) * 0.25
+    return bool(np.median(thickness) < _THIN_RIM)
 
 
 def _sheet(bone: Volume, sky: Sky, part: NDArray[np.bool_], radius: NDArray) -> Volume:

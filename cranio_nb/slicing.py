@@ -1,113 +1,131 @@
-"""Along which planes a lesion is cut: a bone mask and a lesion come in -> the bone on a grid of slices goes out.
+"""Along which planes a lesion is cut: a chart of the vault comes in -> stacks of slices go out.
 
-Frames: voxel (plane, row, col) of the bone's grid -> voxel of the slice grid, whose planes are the slices; both stand
-in the same world (mm, LPS).
+Frames: slice (row, col) in mm about the eye, a point inside the head; a slice's `frame` takes it to the world (mm,
+LPS). Rays of a slice: angle 0 looks at the lesion, against the rows, and grows towards the columns.
 
 The paper cuts axially and its lesion is lateral. Near the vertex an axial slice is a cap, not a ring, and meets the
-rim at a flat angle. The plane that suits a lesion holds the lesion's mean direction and crosses it the short way.
+rim at a flat angle. A fan of planes through a point inside the head cuts every lesion as the paper's slices cut
+theirs: each slice is a full ring, and crosses the hole the short way or any other way one likes.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .prosthesis import Lesion
+from .chart import RadialChart
+from .rays import RayProfile
 from .volume import Volume
 
-_STEP = 0.5  # mm between pixels of an oblique slice
-_APART = 1.0  # mm between oblique slices
-_BESIDE = 12.0  # mm of slices kept beyond the opening, for worn rims
-_MARGIN = 45.0  # mm of bone kept beside the opening, to fit tangents on
-_DEPTH = 30.0  # mm kept below and above the sheet
+_APART = 1.0  # mm between slices on the vault
+_RAY = 0.4  # mm between rays on the vault
+_SIDE = 0.75  # radians of bone looked at on each side of the hole
 
 
-def best_axes(lesion: Lesion) -> NDArray[np.float64]:
-    """Axes of the slice grid that suits a lesion.
-
-    Returns
-    -------
-    ndarray, shape (3, 3)
-        Columns are unit vectors (world, LPS) along plane, row and col: rows run against the lesion's direction, and
-        the planes follow each other along the lesion's long side, so that every slice crosses the short one.
-    """
-    out = lesion.direction
-    points = lesion.opening.to_world(np.argwhere(lesion.opening.voxels)[::7])
-    flat = points - points.mean(axis=0)
-    flat = flat - np.outer(flat @ out, out)
-    long_side = np.linalg.svd(flat, full_matrices=False)[2][0]
-    across = np.cross(-out, long_side)
-    return np.stack([long_side, -out, across], axis=1)
-
-
-def cut(bone: Volume, lesion: Lesion, axes: NDArray[np.float64]) -> Volume:
-    """Resample the bone around a lesion along given axes.
+@dataclass(frozen=True, eq=False)
+class Fan:
+    """Planes that share a line through the eye.
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask.
-    lesion : Lesion
     axes : ndarray, shape (3, 3)
-        Columns: unit vectors of plane, row, col.
-
-    Returns
-    -------
-    Volume
-        Bool mask on the slice grid, 0.5 mm pixels, slices 1 mm apart.
+        Rows, world: the shared line (columns of the slices), the direction the planes turn to, the lesion.
+    tilts : ndarray, shape (P,)
+        Angle of each plane from the lesion's direction, radians, evenly spaced.
+    angles : ndarray, shape (K,)
+        Angles of the rays within a slice, radians, evenly spaced.
     """
-    local = lesion.opening.to_world(np.argwhere(lesion.opening.voxels)) @ axes
-    margin = np.array([_BESIDE, _DEPTH, _MARGIN])
-    low, high = local.min(axis=0) - margin, local.max(axis=0) + margin
-    step = np.array([_APART, _STEP, _STEP])
-    shape = np.ceil((high - low) / step).astype(int) + 1
-    affine = np.eye(4)
-    affine[:3, :3] = axes * step
-    affine[:3, 3] = axes @ low
-    return Volume(resample(bone, affine, tuple(shape)) > 0.5, affine)
+
+    axes: NDArray[np.float64]
+    tilts: NDArray[np.float64]
+    angles: NDArray[np.float64]
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """Unit vector of each ray of each slice, shape (P, K, 3), world."""
+        tilt, angle = self.tilts[:, None, None], self.angles[None, :, None]
+        hinge, turn, middle = self.axes
+        return np.cos(angle) * (np.cos(tilt) * middle + np.sin(tilt) * turn) + np.sin(angle) * hinge
+
+    def locate(self, directions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Fractional (slice, ray) indices of unit vectors (..., 3), shape (2, ...)."""
+        hinge, turn, middle = np.moveaxis(directions @ self.axes.T, -1, 0)
+        tilt, angle = np.arctan2(turn, middle), np.arcsin(np.clip(hinge, -1, 1))
+        steps = self.tilts[1] - self.tilts[0], self.angles[1] - self.angles[0]
+        return np.stack([(tilt - self.tilts[0]) / steps[0], (angle - self.angles[0]) / steps[1]])
+
+    def frames(self, eye: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Origin, row and column vector of each slice, shape (P, 3, 3), world: point = origin + row r + col c."""
+        up = np.cos(self.tilts)[:, None] * self.axes[2] + np.sin(self.tilts)[:, None] * self.axes[1]
+        return np.stack([np.broadcast_to(eye, up.shape), -up, np.broadcast_to(self.axes[0], up.shape)], axis=1)
 
 
-def resample(volume: Volume, affine: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float32]:
-    """Linear interpolation of a mask on another grid.
+def axial_frames(bone: Volume, planes: range) -> NDArray[np.float64]:
+    """Frames of planes of the scan itself, slice (row, col) in px, shape (P, 3, 3)."""
+    origins = [bone.to_world([plane, 0, 0]) for plane in planes]
+    return np.stack([[origin, bone.affine[:3, 1], bone.affine[:3, 2]] for origin in origins])
+
+
+def fans(chart: RadialChart, n: int) -> list[Fan]:
+    """Fans whose slices cross the hole in `n` directions, evenly turned; the slices of the first cross its short side.
+
+    Parameters
+    ----------
+    chart : RadialChart
+    n : int
+        Number of directions, 1 or more.
+    """
+    hole = chart.directions[chart.hole]
+    radius = float(np.nanmedian(chart.outer))
+    across, along, middle = chart.axes
+    out = []
+    for turn in np.arange(n) * np.pi / n:
+        hinge = np.cos(turn) * across + np.sin(turn) * along
+        axes = np.stack([hinge, np.cross(middle, hinge), middle])
+        h, t, m = (hole @ axes.T).T
+        tilt, angle = np.arctan2(t, m), np.arcsin(h)
+        tilts = np.arange(tilt.min() - 2 * _APART / radius, tilt.max() + 2 * _APART / radius, _APART / radius)
+        angles = np.arange(max(angle.min() - _SIDE, -1.55), min(angle.max() + _SIDE, 1.55), _RAY / radius)
+        out.append(Fan(axes, tilts, angles))
+    return out
+
+
+def profile(chart: RadialChart, fan: Fan) -> RayProfile:
+    """Radii and gap of every slice of a fan, read off the chart; lengths in mm."""
+    at = chart.locate(fan.directions)
+    inside = ((at >= 0) & (at <= len(chart.outer) - 1)).all(axis=0)
+    hole = ndimage.map_coordinates(chart.hole.astype(np.float32), at, order=1) > 0.5
+    known = np.isfinite(chart.outer)
+    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+    seen = inside & (ndimage.map_coordinates(known.astype(np.float32), at, order=1) > 0.99)
+    inner, outer = (
+        np.where(seen, ndimage.map_coordinates(radius[tuple(nearest)], at, order=1, mode="nearest"), np.nan)
+        for radius in (chart.inner, chart.outer)
+    )
+    return RayProfile(np.zeros(2), fan.angles, inner, outer, hole)
+
+
+def picture(
+    volume: Volume, frame: NDArray[np.float64], rows: NDArray[np.float64], cols: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """What a mask looks like in a slice.
 
     Parameters
     ----------
     volume : Volume
         Bool mask.
-    affine : ndarray, shape (4, 4)
-        Of the other grid.
-    shape : tuple of int
-        Of the other grid.
+    frame : ndarray, shape (3, 3)
+        Origin, row and column vector of the slice, world.
+    rows, cols : ndarray, shape (R,), (C,)
+        Where to look, in the slice's own unit.
 
     Returns
     -------
-    ndarray of float32, shape `shape`
-        Above 0.5 inside, below outside; 0 where the mask's grid ends.
-
-    Notes
-    -----
-    Between far-apart planes (more than twice the pixel size) 0 and 1 would blend into stairs. There the signed
-    distances of the planes are interpolated instead (shape-based interpolation, Raya and Udupa 1990).
+    ndarray of bool, shape (R, C)
     """
-    to_index = np.linalg.inv(volume.affine) @ affine
-    corners = np.array(np.meshgrid(*[(0, n - 1) for n in shape])).reshape(3, -1)
-    at = to_index[:3, :3] @ corners + to_index[:3, 3:]
-    low = np.clip(np.floor(at.min(axis=1)).astype(int) - 1, 0, np.array(volume.shape) - 1)
-    high = np.clip(np.ceil(at.max(axis=1)).astype(int) + 2, low + 1, volume.shape)
-    part = volume.voxels[tuple(slice(a, b) for a, b in zip(low, high, strict=True))]
-    thick = volume.spacing[0] > 2 * volume.spacing[1:].max()
-    field = _plane_distances(part) if thick else part.astype(np.float32)
-    return ndimage.affine_transform(
-        field, to_index[:3, :3], to_index[:3, 3] - low, output_shape=tuple(shape), order=1, output=np.float32
-    )
-
-
-def _plane_distances(mask: NDArray[np.bool_], reach: float = 8.0) -> NDArray[np.float32]:
-    """In each plane 0.5 + signed distance to the edge of the mask in px, bounded by `reach`; empty planes 0."""
-    field = np.zeros(mask.shape, np.float32)
-    for plane in np.flatnonzero(mask.any(axis=(1, 2))):
-        inside = ndimage.distance_transform_edt(np.pad(mask[plane], 1))[1:-1, 1:-1]
-        outside = ndimage.distance_transform_edt(~mask[plane])
-        field[plane] = np.clip(inside - outside, -reach, reach) + np.where(mask[plane], 0.0, 1.0)
-    return field
+    origin, row, col = frame
+    index = volume.to_voxel(origin + rows[:, None, None] * row + cols[None, :, None] * col)
+    return ndimage.map_coordinates(volume.voxels, np.rint(np.moveaxis(index, -1, 0)), order=0, mode="constant")

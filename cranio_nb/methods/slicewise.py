@@ -3,9 +3,9 @@
 Bone mask in, `Prosthesis` out. Source: the VISAPP 2011 paper, doi 10.5220/0003356601370142.
 
 Faithful is `design(bone, **paper_options(bone))`: axial slices, skeleton and convex hull, tangent lines, the constant
-pressure, 21 snaxels, the hull for slices of partial loss. The defaults are ours: slices cut across the short side of
-the hole, features seen along rays from the head's axis, tangents from arcs and shared between neighbouring slices,
-a start curve and a pressure that follow from the end tangents (`curves.spiral`).
+pressure, 21 snaxels, the hull for slices of partial loss. The defaults are ours: slices that fan out from inside the
+head and cross the hole in several directions, whose answers meet in the median; rims seen along rays; tangents at the
+rim itself, shared between neighbouring slices; a start curve and a pressure that follow from them (`curves.spiral`).
 """
 
 from __future__ import annotations
@@ -19,14 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .. import __version__, balloon, features, fill, lesion, rays, slicing, surface
+from .. import __version__, balloon, chart, features, fill, lesion, rays, slicing, surface
 from ..curves import ChordFrame, GapEnds, Points, cubic, spiral
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
 from ..volume import Volume
-
-_ANGLE_STEP = 0.005  # radians between rays: 0.4 mm on the vault
-_SIDE = 0.9  # radians of bone looked at on each side of the opening
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,17 +33,17 @@ class SliceResult:
     Parameters
     ----------
     plane : int
-        Index on the slice grid.
+        Index into the frames of its `SlicedDesign`.
     status : {"balloon", "hull", "carried", "skipped"}
         How the slice was filled. "carried": from its neighbours. "skipped": not at all.
     reason : str
         Why it was not bridged by its own balloon.
     ends : tuple of GapEnds
-        Outer and inner gap ends, slice px; empty unless status is "balloon".
+        Outer and inner gap ends, slice (row, col); empty unless status is "balloon".
     start, curves : ndarray, shape (2, n, 2)
-        Outer and inner start and final curve, slice (row, col) px; empty for "hull".
+        Outer and inner start and final curve, slice (row, col); empty for "hull" and "skipped".
     values : dict
-        theta0, theta1 (degrees), length (px), n_iter, converged: lists [outer, inner].
+        theta0, theta1 (degrees), length (slice units), n_iter, converged: lists [outer, inner].
     """
 
     plane: int
@@ -60,22 +57,21 @@ class SliceResult:
 
 @dataclass(frozen=True, eq=False)
 class SlicedDesign:
-    """What the method did for one lesion, slice by slice; for pictures, tables and lessons.
+    """What the method did for one lesion in one direction, slice by slice; for pictures, tables and lessons.
 
     Parameters
     ----------
-    grid : Volume
-        Bone on the slice grid; its planes are the slices.
-    opening : Volume
-        The lesion's sheet on the slice grid.
-    patch : Volume
-        Patch on the slice grid.
+    lesion : Lesion
+    frames : ndarray, shape (P, 3, 3)
+        Origin, row and column vector of each slice, world mm: point = origin + row * r + col * c.
+    unit : float
+        mm per unit of the slices: 1, or the pixel size where the slices are planes of the scan.
     slices : tuple of SliceResult
     """
 
-    grid: Volume
-    opening: Volume
-    patch: Volume
+    lesion: Lesion
+    frames: NDArray[np.float64]
+    unit: float
     slices: tuple[SliceResult, ...]
 
 
@@ -84,7 +80,6 @@ def paper_options(bone: Volume) -> dict[str, Any]:
     px = float(bone.spacing[1:].mean())
     return {
         "axial": True,
-        "skeleton": True,
         "skip": features.PAPER_SKIP * px,
         "reach": 10.0 * px,
         "pressure": balloon.PAPER_PRESSURE,
@@ -99,7 +94,7 @@ def design(
     lesions: Sequence[Lesion] | None = None,
     *,
     axial: bool = False,
-    skeleton: bool = False,
+    directions: int = 6,
     skip: float = 2.0,
     reach: float = 12.0,
     pressure: float | None = None,
@@ -122,19 +117,20 @@ def design(
     lesions : sequence of Lesion, optional
         Openings to close; found automatically when not given.
     axial : bool
-        Cut along the planes of the scan, as the paper does. Otherwise across the short side of each opening.
-    skeleton : bool
-        Features by skeleton and convex hull, as the paper does. Otherwise along rays from the head's axis.
+        As the paper: the planes of the scan, features by skeleton and convex hull.
+        Otherwise fans of planes from inside the head, features along rays.
+    directions : int
+        In how many directions the fans cross the hole; 1 is the best single one, across its short side.
     skip, reach : float
         Boundary left out next to the gap, and fitted after that, mm of arc length.
     pressure : float, optional
-        Constant k, px per index squared, outward positive. When not given, k follows from the end tangents.
+        Constant k, slice units per index squared, outward positive. When not given, k follows from the end tangents.
     n_snaxels : int
         Points of a balloon, ends included.
     tension, rigidity, dt, tol, max_iter
         As for `balloon.inflate`.
     coupling : float
-        Standard deviation in mm over which tangents are shared between neighbouring slices; 0 for none.
+        Standard deviation in mm over which tangents are shared between neighbouring slices of a fan; 0 for none.
     smooth : bool
         Surface without stairs (see `surface.extract`).
     progress : callable, optional
@@ -144,6 +140,7 @@ def design(
     -------
     Prosthesis
         `record["slices"]` holds one entry per slice: status, reason, angles, lengths, iterations, convergence.
+        `working` holds a `SlicedDesign` per lesion and direction.
 
     Raises
     ------
@@ -154,105 +151,116 @@ def design(
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
     lesions = lesion.find(bone) if lesions is None else lesions
-    sliced = []
+    scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol, "max_iter": max_iter}
+    curve = {"n": n_snaxels, "pressure": pressure, "scheme": scheme}
+    working: list[SlicedDesign] = []
+    patch = np.zeros(bone.shape, bool)
     for i, one in enumerate(lesions):
-        tell("slices", i / len(lesions))
-        sliced.append(bridge(bone, one, **{k: v for k, v in options.items() if k != "smooth"}))
-    pieces = [_onto(part, bone, one) for part, one in zip(sliced, lesions, strict=True)]
-    patch = bone.with_voxels(np.logical_or.reduce(pieces))
-    if not patch.voxels.any():
-        raise NoOpening(
-            "NothingBridged", "No slice of the opening could be bridged.", "Try another slicing or threshold."
-        )
+        tell("slices", 0.9 * i / len(lesions))
+        if axial:
+            made, piece = _axial(bone, one, skip, reach, curve)
+        else:
+            made, piece = _fanned(bone, one, directions, skip, reach, coupling, curve)
+        working += made
+        patch |= fill.main_piece(piece, one.opening.voxels)
+    if not patch.any():
+        raise NoOpening("NothingBridged", "No slice of the opening could be bridged.", "Try another slicing.")
     tell("surface", 0.9)
-    mesh = surface.extract(patch, smooth=smooth)
+    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
     sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
     record = {
         "version": __version__,
         "seconds": time.perf_counter() - began,
-        "slices": [_entry(i, s) for i, part in enumerate(sliced) for s in part.slices],
+        "slices": [_entry(i, s) for i, part in enumerate(working) for s in part.slices],
     }
-    return Prosthesis(mesh, sides, patch, "slicewise", options, record, tuple(sliced))
+    return Prosthesis(mesh, sides, bone.with_voxels(patch), "slicewise", options, record, tuple(working))
 
 
-def bridge(
-    bone: Volume,
-    lesion: Lesion,
-    *,
-    axial: bool,
-    skeleton: bool,
-    skip: float,
-    reach: float,
-    pressure: float | None,
-    n_snaxels: int,
-    coupling: float,
-    **scheme: Any,
-) -> SlicedDesign:
-    """Bridge one lesion slice by slice; parameters as for `design`.
-
-    Returns
-    -------
-    SlicedDesign
-    """
-    grid, opening = _slice_grid(bone, lesion, axial)
-    px = float(grid.spacing[1:].mean())
-    centre = grid.to_voxel(lesion.head_centre)[1:]
-    if skeleton:
-        results = _by_skeleton(grid, opening, skip / px, reach / px)
-    else:
-        results = _by_rays(grid, opening, centre, skip / px, reach / px, coupling / float(grid.spacing[0]))
-    results = _inflate(results, centre, n_snaxels, pressure, scheme)
-    results = _carry(results)
-    patch = np.zeros(grid.shape, bool)
-    near = ndimage.binary_dilation(opening.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
+def _axial(
+    bone: Volume, one: Lesion, skip: float, reach: float, curve: dict[str, Any]
+) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
+    """Slices and patch of one lesion along the planes of the scan."""
+    first, end = one.planes
+    planes = range(max(first - 2, 0), min(end + 2, bone.shape[0]))
+    px = float(bone.spacing[1:].mean())
+    opening = one.opening.voxels[planes.start : planes.stop]
+    slices = bone.voxels[planes.start : planes.stop]
+    inside = bone.to_voxel(one.head_centre)[1:]
+    results = _carry(_inflate(_by_skeleton(slices, opening, skip / px, reach / px), inside, curve))
+    patch = np.zeros(bone.shape, bool)
+    near = ndimage.binary_dilation(opening.any(axis=0), iterations=int(np.ceil(3 / px)))
     for s in results:
         if s.status == "hull":
-            patch[s.plane] = fill.partial_loss(grid.voxels[s.plane], min_area=4 / px**2, region=near)
+            filled = fill.partial_loss(slices[s.plane], min_area=4 / px**2, region=near)
         elif s.curves.size:
-            patch[s.plane] = fill.patch(s.curves[0], s.curves[1], grid.voxels[s.plane])
-    return SlicedDesign(grid, opening, grid.with_voxels(patch), tuple(results))
+            filled = fill.patch(s.curves[0], s.curves[1], slices[s.plane])
+        else:
+            continue
+        patch[planes.start + s.plane] = filled
+    return [SlicedDesign(one, slicing.axial_frames(bone, planes), px, tuple(results))], patch
 
 
-def _slice_grid(bone: Volume, lesion: Lesion, axial: bool) -> tuple[Volume, Volume]:
-    """Bone and opening on the grid whose planes are the slices to work on."""
-    if not axial:
-        grid = slicing.cut(bone, lesion, slicing.best_axes(lesion))
-        opening = slicing.resample(lesion.opening, grid.affine, grid.shape) > 0.3
-        return grid, grid.with_voxels(opening)
-    first, end = lesion.planes
-    box = (slice(max(first - 2, 0), min(end + 2, bone.shape[0])), slice(None), slice(None))
-    return bone.crop(box), lesion.opening.crop(box)
+def _fanned(
+    bone: Volume, one: Lesion, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
+) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
+    """Slices of one lesion in several directions, and the patch between the medians of their curves."""
+    vault = chart.look(bone, one)
+    made, maps = [], []
+    for fan in slicing.fans(vault, directions):
+        profile = slicing.profile(vault, fan)
+        results = _carry(_inflate(_by_rays(profile, skip, reach, coupling), np.zeros(2), curve))
+        made.append(SlicedDesign(one, fan.frames(vault.eye), 1.0, tuple(results)))
+        at = fan.locate(vault.directions[vault.hole])
+        maps.append([_radii_at(results, b, profile, at) for b in (0, 1)])
+    outer, inner = np.full((2, *vault.hole.shape), np.nan)
+    with np.errstate(all="ignore"):
+        outer[vault.hole], inner[vault.hole] = _median(np.array(maps))
+    if not np.isfinite(outer).any():
+        return made, np.zeros(bone.shape, bool)
+    return made, chart.voxelise(vault, outer, inner, bone)
 
 
-def _by_skeleton(grid: Volume, opening: Volume, skip: float, reach: float) -> list[SliceResult]:
+def _median(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Median over the first axis without the unknown; nan where all are unknown."""
+    ranked = np.sort(values, axis=0)  # nan last
+    known = np.isfinite(values).sum(axis=0)[None]
+    low, high = np.maximum((known - 1) // 2, 0), np.maximum(known // 2, 0)
+    pick = [np.take_along_axis(ranked, np.minimum(k, len(values) - 1), axis=0)[0] for k in (low, high)]
+    return (pick[0] + pick[1]) / 2
+
+
+def _radii_at(results: list[SliceResult], boundary: int, profile: rays.RayProfile, at: NDArray) -> NDArray:
+    """Radii of the curves of a fan at fractional (slice, ray) places (2, n), nan where no curve passes."""
+    radii = np.full(profile.outer.shape, np.nan)
+    for s in results:
+        if s.curves.size:
+            row, col = s.curves[boundary].T
+            radii[s.plane] = np.interp(profile.angles, np.arctan2(col, -row), np.hypot(row, col), np.nan, np.nan)
+    return ndimage.map_coordinates(radii, at, order=1, mode="constant", cval=np.nan)
+
+
+def _by_skeleton(slices: NDArray[np.bool_], opening: NDArray[np.bool_], skip: float, reach: float) -> list[SliceResult]:
     """Gap ends of every slice by skeleton and hull."""
     results = []
-    for plane in range(grid.shape[0]):
+    for plane in range(len(slices)):
         try:
-            seen = features.slice_features(grid.voxels[plane])
+            seen = features.slice_features(slices[plane])
             if seen.closed:
                 results.append(SliceResult(plane, "hull", "closed ring"))
                 continue
-            ends = features.gap_ends(seen, opening.voxels[plane], skip=skip, reach=reach)
+            ends = features.gap_ends(seen, opening[plane], skip=skip, reach=reach)
             results.append(SliceResult(plane, "balloon", ends=ends))
         except features.SliceProblem as problem:
             results.append(SliceResult(plane, "skipped", problem.message))
     return results
 
 
-def _by_rays(
-    grid: Volume, opening: Volume, centre: NDArray, skip: float, reach: float, coupling: float
-) -> list[SliceResult]:
-    """Gap ends of every slice along rays, tangents shared between neighbours."""
-    _, row, col = np.nonzero(opening.voxels)
-    angle = np.arctan2(col - centre[1], centre[0] - row)
-    angles = np.arange(angle.min() - _SIDE, angle.max() + _SIDE, _ANGLE_STEP)
-    profile = rays.look(grid.voxels, centre, angles, px=float(grid.spacing[1]))
-    gap = rays.find_gaps(profile, opening.voxels, px=float(grid.spacing[1]), apart=float(grid.spacing[0]))
-    rims = rays.fit_rims(profile, gap, skip=skip, reach=reach)
+def _by_rays(profile: rays.RayProfile, skip: float, reach: float, coupling: float) -> list[SliceResult]:
+    """Gap ends of every slice of a fan, tangents shared between neighbours."""
+    rims = rays.fit_rims(profile, skip=skip, reach=reach)
     tangents = rays.share_tangents(rims.tangents, coupling)
     results = []
-    for plane in np.flatnonzero(gap[:, 0] >= 0):
+    for plane in np.flatnonzero(profile.missing.any(axis=1)):
         if np.isfinite(tangents[plane]).all():
             ends = tuple(GapEnds(rims.points[plane, b], tangents[plane, b]) for b in (0, 1))
             results.append(SliceResult(int(plane), "balloon", ends=ends))
@@ -261,9 +269,7 @@ def _by_rays(
     return results
 
 
-def _inflate(
-    results: list[SliceResult], inside: NDArray, n: int, pressure: float | None, scheme: dict[str, Any]
-) -> list[SliceResult]:
+def _inflate(results: list[SliceResult], inside: NDArray, curve: dict[str, Any]) -> list[SliceResult]:
     """Relax the balloons of all slices together and put the curves into the results."""
     own = [i for i, s in enumerate(results) if s.status == "balloon"]
     if not own:
@@ -274,8 +280,8 @@ def _inflate(
         [[f.end_angles(e) for f, e in zip(*pair, strict=True)] for pair in zip(frames, gaps, strict=True)]
     )
     length = np.array([[f.length for f in pair] for pair in frames])
-    start, slopes, push = _initial(length, angles[..., 0], angles[..., 1], n, pressure)
-    relaxed = balloon.inflate(start, slopes, pressure=push, **scheme)
+    start, slopes, push = _initial(length, angles[..., 0], angles[..., 1], curve["n"], curve["pressure"])
+    relaxed = balloon.inflate(start, slopes, pressure=push, **curve["scheme"])
     out = list(results)
     for j, i in enumerate(own):
         values = {
@@ -326,23 +332,6 @@ def _carry(results: list[SliceResult]) -> list[SliceResult]:
         a, b = int(below[-1]), int(above[0])
         t = (s.plane - a) / (b - a)
         out.append(replace(s, status="carried", curves=(1 - t) * curves[a] + t * curves[b]))
-    return out
-
-
-def _onto(part: SlicedDesign, bone: Volume, lesion: Lesion) -> NDArray[np.bool_]:
-    """The patch of one lesion on the bone's own grid, off the bone, in one piece; shape of `bone`."""
-    out = np.zeros(bone.shape, bool)
-    where = ndimage.find_objects(part.patch.voxels.view(np.uint8))
-    if not where:
-        return out
-    corners = np.array(np.meshgrid(*[(s.start - 1, s.stop) for s in where[0]])).reshape(3, -1).T
-    index = bone.to_voxel(part.patch.to_world(corners))
-    low = np.maximum(np.floor(index.min(axis=0)).astype(int), 0)
-    high = np.minimum(np.ceil(index.max(axis=0)).astype(int) + 1, bone.shape)
-    box = tuple(slice(a, b) for a, b in zip(low, high, strict=True))
-    sub = bone.crop((box[0], box[1], box[2]))
-    patch = (slicing.resample(part.patch, sub.affine, sub.shape) > 0.5) & ~sub.voxels
-    out[box] = fill.main_piece(patch, lesion.opening.voxels[box])
     return out
 
 
