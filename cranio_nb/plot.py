@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,15 +18,17 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
-from . import features
+from . import features, slicing
 from .mesh import Mesh
 from .methods.slicewise import SlicedDesign, SliceResult
 from .render import Picture, Solid, render, view_axes
+from .volume import Volume
 
 BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
 YELLOW, BLUE, VERMILLION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 BONE, GREY = "#D8D2C4", "#6B6B6B"
 OUTER_COLOUR, INNER_COLOUR = BLUE, VERMILLION
+_COLOURS = (OUTER_COLOUR, INNER_COLOUR)
 DPI = 110
 
 SIDES = {
@@ -41,7 +42,8 @@ SIDES = {
 
 _LETTERS = (("R", "L"), ("A", "P"), ("I", "S"))  # negative and positive end of each world axis
 _RIM = 14  # px left free around a view
-_AROUND = 12.0  # mm of slice shown around an opening
+_PIXEL = 0.35  # mm of a slice's picture
+_AROUND = 12.0  # mm of slice shown around the curves
 
 
 def new_figure(width: float, height: float) -> tuple[Figure, Axes]:
@@ -74,52 +76,58 @@ def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str 
 
 
 def draw_slice(
-    ax: Axes, sliced: SlicedDesign, result: SliceResult, *, centre: ArrayLike | None = None, skeleton: bool = False
+    ax: Axes, sliced: SlicedDesign, result: SliceResult, bone: Volume, patch: Volume | None, *, skeleton: bool = False
 ) -> None:
     """Draw a slice of a design: bone, its boundaries, ends, tangents, start and final curves, patch.
 
     Parameters
     ----------
     ax : Axes
-        Axes in mm along columns and rows from the slice's first pixel.
+        Will be in mm along columns and rows of the slice.
     sliced : SlicedDesign
     result : SliceResult
         One of ``sliced.slices``.
-    centre : array_like, shape (3,), optional
-        World mm of a point inside the head; without it no boundaries are drawn.
+    bone, patch : Volume
+        Bool masks.
     skeleton : bool
-        Boundaries by skeleton and hull, as the paper takes them; otherwise by their distance from the centre.
+        Boundaries by skeleton and hull, as the paper takes them; otherwise by their distance from the head's centre.
     """
-    px = sliced.grid.spacing[1:]
-    bone, patch = sliced.grid.voxels[result.plane], sliced.patch.voxels[result.plane]
-    _fill(ax, bone, px, BONE)
-    _fill(ax, patch, px, SKY, alpha=0.55)
-    if centre is not None:
-        inside = sliced.grid.to_voxel(centre)[1:]
-        for points, colour in zip(_boundaries(bone, inside, skeleton), (OUTER_COLOUR, INNER_COLOUR), strict=True):
-            ax.plot(*_xy(points, px), ls="none", marker=".", ms=1.6, mew=0, color=colour)
-    for curve, start, colour in zip(result.curves, _starts(result), (OUTER_COLOUR, INNER_COLOUR), strict=False):
+    unit, frame = sliced.unit, sliced.frames[result.plane]
+    (left, right), (bottom, top) = _limits(ax, sliced)
+    rows, cols = (np.arange(low, high, _PIXEL) for low, high in ((top, bottom), (left, right)))
+    seen = slicing.picture(bone, frame, rows / unit, cols / unit)
+    extent = (cols[0] - _PIXEL / 2, cols[-1] + _PIXEL / 2, rows[-1] + _PIXEL / 2, rows[0] - _PIXEL / 2)
+    _fill(ax, seen, extent, BONE)
+    if patch is not None:
+        _fill(ax, slicing.picture(patch, frame, rows / unit, cols / unit), extent, SKY, alpha=0.55)
+    edges = _skeleton_boundaries(bone, frame, unit) if skeleton else None
+    for points, colour in zip(edges or _boundaries(seen, rows, cols, _centre(sliced, frame)), _COLOURS, strict=True):
+        ax.plot(*points.T[::-1], ls="none", marker=".", ms=1.6, mew=0, color=colour)
+    for curve, start, colour in zip(result.curves, _starts(result), _COLOURS, strict=False):
         if len(start):
-            ax.plot(*_xy(start, px), color=colour, ls=(0, (4, 2)), lw=1.1)
-        ax.plot(*_xy(curve, px), color=colour, ls="-", lw=1.8)
+            ax.plot(*unit * start.T[::-1], color=colour, ls=(0, (4, 2)), lw=1.1)
+        ax.plot(*unit * curve.T[::-1], color=colour, ls="-", lw=1.8)
     for ends in result.ends:
-        _draw_ends(ax, ends.points, ends.tangents, px)
-    _frame(ax, sliced, result.plane)
+        _draw_ends(ax, unit * ends.points, ends.tangents)
+    ax.set_xlim(left, right)
+    ax.set_ylim(bottom, top)
     scale_bar(ax, 20.0)
 
 
-def slice_figure(sliced: SlicedDesign, result: SliceResult, **options: Any) -> Figure:
-    """`draw_slice` on a new figure; options as there."""
+def slice_figure(
+    sliced: SlicedDesign, result: SliceResult, bone: Volume, patch: Volume | None, *, skeleton: bool = False
+) -> Figure:
+    """`draw_slice` on a new figure."""
     figure, ax = new_figure(3.4, 2.5)
-    draw_slice(ax, sliced, result, **options)
+    draw_slice(ax, sliced, result, bone, patch, skeleton=skeleton)
     return figure
 
 
-def _fill(ax: Axes, mask: NDArray[np.bool_], px: NDArray, colour: str, alpha: float = 1.0) -> None:
+def _fill(
+    ax: Axes, mask: NDArray[np.bool_], extent: tuple[float, float, float, float], colour: str, alpha: float = 1.0
+) -> None:
     """Show a mask in one colour, clear elsewhere."""
-    rows, cols = mask.shape
-    extent = (-0.5 * px[1], (cols - 0.5) * px[1], (rows - 0.5) * px[0], -0.5 * px[0])
-    rgba = np.zeros((rows, cols, 4))
+    rgba = np.zeros((*mask.shape, 4))
     rgba[mask] = (*_rgb(colour), alpha)
     ax.imshow(rgba, extent=extent, interpolation="nearest")
 
@@ -128,32 +136,42 @@ def _starts(result: SliceResult) -> NDArray:
     return result.start if len(result.start) == len(result.curves) else np.empty((len(result.curves), 0, 2))
 
 
-def _xy(points: NDArray, px: NDArray) -> tuple[NDArray, NDArray]:
-    """Slice (row, col) px -> x, y of the axes in mm."""
-    return points[:, 1] * px[1], points[:, 0] * px[0]
-
-
-def _draw_ends(ax: Axes, points: NDArray, tangents: NDArray, px: NDArray) -> None:
-    """Gap ends as rings, their tangents as arrows of 12 mm."""
-    for point, tangent in zip(points * px, tangents * px, strict=True):
+def _draw_ends(ax: Axes, points: NDArray, tangents: NDArray) -> None:
+    """Gap ends (row, col) in mm as rings, their tangents as arrows of 12 mm."""
+    for point, tangent in zip(points, tangents, strict=True):
         tip = point + 12.0 * tangent / np.linalg.norm(tangent)
         arrow = {"arrowstyle": "-|>", "color": GREEN, "lw": 1.3, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
         ax.annotate("", xy=tip[::-1], xytext=point[::-1], arrowprops=arrow)
-    ax.plot(*_xy(points, px), ls="none", marker="o", ms=4.5, mfc="white", mec=BLACK, mew=1.0)
+    ax.plot(*points.T[::-1], ls="none", marker="o", ms=4.5, mfc="white", mec=BLACK, mew=1.0)
 
 
-def _boundaries(bone: NDArray[np.bool_], inside: NDArray, skeleton: bool) -> tuple[NDArray, NDArray]:
-    """Outer and inner boundary pixels of a slice, shape (n, 2) each."""
-    if skeleton:
-        try:
-            seen = features.slice_features(bone)
-            return seen.outer, seen.inner
-        except features.SliceProblem:
-            pass  # no skeleton to part them by: take the distance from the centre
-    edge = np.argwhere(bone & ~ndimage.binary_erosion(bone))
-    radius = np.hypot(*(edge - inside).T)
-    turn = np.arctan2(*(edge - inside).T)
-    ray = np.round((turn + np.pi) / 0.02).astype(int)
+def _centre(sliced: SlicedDesign, frame: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The head's centre in a slice, (row, col) in mm."""
+    origin, row, col = frame
+    away = sliced.lesion.head_centre - origin
+    return np.array([away @ axis / np.linalg.norm(axis) for axis in (row, col)])
+
+
+def _skeleton_boundaries(
+    bone: Volume, frame: NDArray[np.float64], unit: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+    """Outer and inner boundary, (row, col) in mm, of a plane of the scan; None where it has no skeleton."""
+    plane = round(float(bone.to_voxel(frame[0])[0]))
+    try:
+        seen = features.slice_features(bone.voxels[plane])
+    except features.SliceProblem:
+        return None
+    return seen.outer * unit, seen.inner * unit
+
+
+def _boundaries(
+    bone: NDArray[np.bool_], rows: NDArray, cols: NDArray, centre: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Outer and inner boundary, (row, col) in mm, parted half-way between first and last bone along each ray."""
+    index = np.argwhere(bone & ~ndimage.binary_erosion(bone, border_value=1))
+    edge = np.column_stack([rows[index[:, 0]], cols[index[:, 1]]])
+    radius = np.hypot(*(edge - centre).T)
+    ray = np.round((np.arctan2(*(edge - centre).T) + np.pi) / 0.02).astype(int)
     high, low = np.full(ray.max(initial=0) + 1, -np.inf), np.full(ray.max(initial=0) + 1, np.inf)
     np.maximum.at(high, ray, radius)
     np.minimum.at(low, ray, radius)
@@ -161,18 +179,15 @@ def _boundaries(bone: NDArray[np.bool_], inside: NDArray, skeleton: bool) -> tup
     return edge[far], edge[~far]
 
 
-def _frame(ax: Axes, sliced: SlicedDesign, plane: int) -> None:
-    """Set the limits to the opening's surroundings, the same for every slice of a lesion."""
-    px, shape = sliced.grid.spacing[1:], sliced.grid.shape[1:]
+def _limits(ax: Axes, sliced: SlicedDesign) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Limits of x and y in mm around the curves, the same for every slice of a design; rows run down."""
     curves = [s.curves.reshape(-1, 2) for s in sliced.slices if s.curves.size]
-    points = np.concatenate([np.argwhere(sliced.opening.voxels.any(axis=0)), *curves]) * px
-    low = np.maximum(points.min(axis=0) - _AROUND, -0.5 * px)
-    high = np.minimum(points.max(axis=0) + _AROUND, (np.array(shape) - 0.5) * px)
+    points = sliced.unit * np.concatenate(curves) if curves else _centre(sliced, sliced.frames[0])[None]
+    low, high = points.min(axis=0) - _AROUND, points.max(axis=0) + _AROUND
     middle, half = (low + high) / 2, (high - low) / 2
     width, height = ax.get_window_extent().size
     half = np.maximum(half, [half[1] * height / width, half[0] * width / height])
-    ax.set_xlim(middle[1] - half[1], middle[1] + half[1])
-    ax.set_ylim(middle[0] + half[0], middle[0] - half[0])
+    return (middle[1] - half[1], middle[1] + half[1]), (middle[0] + half[0], middle[0] - half[0])
 
 
 def views_of(directions: Sequence[ArrayLike]) -> dict[str, NDArray[np.float64]]:

@@ -75,6 +75,7 @@ def report_page(result: RunResult) -> str:
         distances=distance_shots(result),
         table3=distance_table(result),
         colours=plot,
+        unit="px" if made.parameters.get("axial") else "mm",
     )
 
 
@@ -122,17 +123,20 @@ def _floor(result: RunResult) -> float:
 
 
 def slice_shots(result: RunResult) -> list[Shot]:
-    """A few slices of each opening with all that was done in them."""
-    sliced = [part for part in result.prosthesis.working if isinstance(part, SlicedDesign)]
-    each = max(2, N_SLICES // max(len(sliced), 1))
+    """A few slices of each opening, in the first direction it was cut along, with all that was done in them."""
+    made = result.prosthesis
+    sliced = [part for part in made.working if isinstance(part, SlicedDesign)]
+    first = [next((part for part in sliced if part.lesion is one), None) for one in result.lesions]
     shots = []
-    for number_of, (part, one) in enumerate(zip(sliced, result.lesions, strict=False), 1):
-        skeleton = bool(result.prosthesis.parameters.get("skeleton", False))
-        for i in telling_slices([s.status for s in part.slices], each):
-            at = f"opening {number_of}, slice" if len(sliced) > 1 else "slice"
-            title = f"{at} {i + 1} of {len(part.slices)}"
-            figure = plot.slice_figure(part, part.slices[i], centre=one.head_centre, skeleton=skeleton)
-            shots.append(_shot(figure, _slice_alt(title, part.slices[i]), _slice_caption(title, part.slices[i])))
+    for number_of, part in enumerate(first, 1):
+        if part is None:
+            continue
+        at = f"opening {number_of}, slice" if len(first) > 1 else "slice"
+        for i in telling_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
+            s, title = part.slices[i], f"{at} {i + 1} of {len(part.slices)}"
+            skeleton = bool(made.parameters.get("axial", False))
+            figure = plot.slice_figure(part, s, result.bone, made.patch, skeleton=skeleton)
+            shots.append(_shot(figure, _slice_alt(title, s), _slice_caption(title, s)))
     return shots
 
 
