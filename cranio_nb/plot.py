@@ -199,9 +199,15 @@ def views_of(directions: Sequence[ArrayLike]) -> dict[str, NDArray[np.float64]]:
         From the head's centre to each opening, LPS, the largest first.
     """
     towards = np.array(directions, float)
-    worth = {name: float(np.clip(towards @ side, 0, None).sum()) for name, side in SIDES.items()}
-    best = sorted(SIDES, key=lambda name: worth[name], reverse=True)[:2]
-    return {"facing the opening": towards[0], **{name: np.array(SIDES[name]) for name in best}}
+    views, seen = {"facing the opening": towards[0]}, towards @ towards[0]
+    for _ in range(2):
+        rest = {name: towards @ side for name, side in SIDES.items() if name not in views}
+        # first the side that shows what is not yet seen well, then the one that shows most
+        best = max(
+            rest, key=lambda name: (np.clip(rest[name] - seen, 0, None).sum(), np.clip(rest[name], 0, None).sum())
+        )
+        views[best], seen = np.array(SIDES[best]), np.maximum(seen, rest[best])
+    return views
 
 
 def view_figure(skull: Mesh, prosthesis: Mesh, towards: ArrayLike, *, px: float = 0.6) -> Figure:

@@ -75,6 +75,7 @@ def report_page(result: RunResult) -> str:
         distances=distance_shots(result),
         table3=distance_table(result),
         colours=plot,
+        directions=_directions(result),
         unit="px" if made.parameters.get("axial") else "mm",
     )
 
@@ -140,10 +141,15 @@ def slice_shots(result: RunResult) -> list[Shot]:
     return shots
 
 
+def _directions(result: RunResult) -> int:
+    """In how many directions the largest opening was cut."""
+    return sum(getattr(part, "lesion", None) is result.lesions[0] for part in result.prosthesis.working)
+
+
 def _slice_caption(title: str, s: SliceResult) -> str:
     head = title[0].upper() + title[1:]
     if s.status != "balloon":
-        return f"{head}: {s.status} ({s.reason})."
+        return f"{head}: {s.status} ({s.reason.rstrip('.')})."
     angles = "; ".join(
         f"{side}: θ₀ {s.values['theta0'][i]:.0f}°, θ₁ {s.values['theta1'][i]:.0f}°, {_steps(s.values['n_iter'][i])}"
         + ("" if s.values["converged"][i] else ", not at rest")

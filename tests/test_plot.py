@@ -103,7 +103,9 @@ def test_three_views_show_the_opening():
     views = plot.views_of([(0.9, 0.1, 0.4)])
     assert list(views) == ["facing the opening", "from the left", "from above"]
     np.testing.assert_allclose(views["facing the opening"], (0.9, 0.1, 0.4))
-    assert set(plot.views_of([(1, 0, 0), (-0.9, 0, 0)])) == {"facing the opening", "from the left", "from the right"}
+    assert list(plot.views_of([(1, 0, 0), (-0.9, 0, 0.1), (-0.9, 0, 0.1)]))[1] == "from the right"
+    three = plot.views_of([(0.8, 0, 0.6), (-0.4, 0.8, 0.4), (0, -1, 0)])
+    assert set(three) == {"facing the opening", "from the front", "from the back"}
 
 
 @pytest.fixture

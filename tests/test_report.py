@@ -46,12 +46,24 @@ def result(tmp_path_factory) -> RunResult:
 
 
 @pytest.fixture(scope="module")
-def page(result) -> Page:
-    return Page(report.report_page(result))
+def html(result) -> str:
+    return report.report_page(result)
 
 
-def test_page_is_self_contained(result, page):
-    text = re.sub(r"base64,[A-Za-z0-9+/=]+", "", report.report_page(result))
+@pytest.fixture(scope="module")
+def page(html) -> Page:
+    return Page(html)
+
+
+@pytest.fixture(scope="module")
+def bare(result) -> RunResult:
+    """A run with neither slices nor a truth, as of a method without slices."""
+    made = dataclasses.replace(result.prosthesis, working=(), record={})
+    return dataclasses.replace(result, truth=None, prosthesis=made)
+
+
+def test_page_is_self_contained(html, page):
+    text = re.sub(r"base64,[A-Za-z0-9+/=]+", "", html)
     assert not re.search(r"https?:|//|url\(|@import|<script|<link|<iframe|<object|\shref=|\son\w+=", text)
     assert all(attrs["src"].startswith("data:image/png;base64,") for attrs in page.all("img"))
     assert not page.all("a") and not page.all("script")
@@ -90,19 +102,19 @@ def test_tables_stand_beside_the_papers(page, result):
 
 
 def test_own_defaults_are_not_set_beside_the_paper(result):
-    page = Page(report.report_page(dataclasses.replace(result, preset="default")))
-    assert "Paper min" not in page.text and "Paper: outer" not in page.text
+    own = dataclasses.replace(result, preset="default")
+    assert not any(table["paper"] or len(row) > 3 for table in report.balloon_tables(own) for row in table["rows"])
+    assert list(report.distance_table(own)) == ["Outer (voxels)", "Inner (voxels)", "Outer (mm)", "Inner (mm)"]
 
 
-def test_page_without_truth_or_slices(result):
-    bare = dataclasses.replace(result.prosthesis, working=(), record={})
-    page = Page(report.report_page(dataclasses.replace(result, truth=None, prosthesis=bare)))
+def test_page_without_truth_or_slices(bare):
+    page = Page(report.report_page(bare))
     assert len(page.all("img")) == 3 and "known truth" not in page.text and "balloons in numbers" not in page.text
 
 
-def test_markup_in_findings_is_shown_not_run(result):
+def test_markup_in_findings_is_shown_not_run(bare):
     evil = Finding("Evil", "warning", "<script>alert('x')</script>&\"")
-    text = report.report_page(dataclasses.replace(result, findings=(evil,)))
+    text = report.report_page(dataclasses.replace(bare, findings=(evil,)))
     assert "<script" not in text and "&lt;script&gt;" in text
     assert "<script>alert('x')</script>&\"" in Page(text).text
 
