@@ -224,7 +224,7 @@ def bad_folder(kind: str, case: Case, home: Path, folder: Path) -> Path:
 def test_refused_inputs_leave_no_trace(kind, case, home, tmp_path):
     scan = bad_folder(kind, case, home, tmp_path)
     before = digest(tmp_path)
-    assert_refused(cranio("design", scan, "--out", tmp_path / "new" / "out"), 3)
+    assert_refused(cranio("design", scan, "--preset", "paper", "--out", tmp_path / "new" / "out"), 3)
     assert digest(tmp_path) == before and not (tmp_path / "new").exists()
 
 
