@@ -153,6 +153,7 @@ def run_design(
     tell("bone", 0.3)
     bone, lesions, threshold = find_openings(scan, threshold)
     lesions = lesions if planes is None else within_planes(lesions, planes)
+    _check_room([one.opening for one in lesions], "The opening of the skull")
     clock.lap("bone and openings")
     made = _design(bone, lesions, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done))
     clock.lap("design")
@@ -272,12 +273,7 @@ def _design(
     module = method_module(method)
     start = module.paper_options(bone) if preset == "paper" else {}
     made: Prosthesis = module.design(bone, lesions, progress=progress, **(start | options))
-    if made.patch is not None and _at_edge(made.patch.voxels):
-        raise InputRefused(
-            "OpeningLeavesImage",
-            "The prosthesis reaches the edge of the image, where it would be cut off.",
-            "Use a scan that covers the whole opening and some room around it.",
-        )
+    _check_room([] if made.patch is None else [made.patch], "The prosthesis")
     return made
 
 
@@ -306,9 +302,14 @@ def _findings(made: Prosthesis, mesh: MeshReport, lesions: tuple[Lesion, ...]) -
     return tuple(found)
 
 
-def _at_edge(mask: NDArray[np.bool_]) -> bool:
-    """Whether a mask touches the border of its grid."""
-    return any(mask.take(end, axis).any() for axis in range(3) for end in (0, -1))
+def _check_room(masks: list[Volume], what: str) -> None:
+    """Refuse what touches the border of its grid: it may go on outside."""
+    if any(mask.voxels.take(end, axis).any() for mask in masks for axis in range(3) for end in (0, -1)):
+        raise InputRefused(
+            "OpeningLeavesImage",
+            f"{what} reaches the edge of the image, where it would be cut off.",
+            "Use a scan that covers the whole opening and some room around it.",
+        )
 
 
 class _Clock:
