@@ -55,10 +55,14 @@ class RimFits:
     ----------
     points, tangents : ndarray, shape (P, 2, 2, 2)
         [slice, boundary (0 outer, 1 inner), end, (row, col)]; tangents point into the gap; nan where unknown.
+    turns : ndarray, shape (P, 2, 2)
+        [slice, boundary, end]: how much the slope of the radius changes over `reach`, radians. Sound vault turns
+        little; ridges, sinuses and thin spots turn much, and a tangent taken there says little about the gap.
     """
 
     points: NDArray[np.float64]
     tangents: NDArray[np.float64]
+    turns: NDArray[np.float64]
 
 
 def fit_rims(profile: RayProfile, *, skip: float, reach: float, order: int = 2, n_points: int = 40) -> RimFits:
@@ -82,6 +86,7 @@ def fit_rims(profile: RayProfile, *, skip: float, reach: float, order: int = 2, 
     """
     gap, step = profile.gap, profile.angles[1] - profile.angles[0]
     points, tangents = np.full((2, len(gap), 2, 2, 2), np.nan)
+    turns = np.full((len(gap), 2, 2), np.nan)
     good = np.flatnonzero(gap[:, 0] >= 0)
     t = np.linspace(0, 1, n_points)
     for boundary, radius in enumerate((profile.outer, profile.inner)):
@@ -93,14 +98,15 @@ def fit_rims(profile: RayProfile, *, skip: float, reach: float, order: int = 2, 
             rays = np.clip(rays, 0, radius.shape[1] - 1)
             r = np.where(inside, radius[good[:, None], rays], np.nan)
             x = np.broadcast_to((away - away[0]) * step * direction, r.shape)
-            value, slope = _robust_fit(x, r, order, noise=0.004 * typical)
+            value, slope, bend = _robust_fit(x, r, order, noise=0.004 * typical)
+            turns[good, boundary, end] = np.abs(2 * bend * x[:, -1] / value)
             angle = profile.angles[rays[:, 0]]
             up = np.stack([-np.cos(angle), np.sin(angle)], axis=-1)
             onward = np.stack([np.sin(angle), np.cos(angle)], axis=-1)
             along = slope[:, None] * up + value[:, None] * onward
             points[good, boundary, end] = profile.centre + value[:, None] * up
             tangents[good, boundary, end] = -direction * along / np.linalg.norm(along, axis=-1, keepdims=True)
-    return RimFits(points, tangents)
+    return RimFits(points, tangents, turns)
 
 
 def share_tangents(tangents: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
@@ -126,8 +132,8 @@ def share_tangents(tangents: NDArray[np.float64], sigma: float) -> NDArray[np.fl
     return shared / np.linalg.norm(shared, axis=-1, keepdims=True)
 
 
-def _robust_fit(x: NDArray, y: NDArray, order: int, noise: float) -> tuple[NDArray, NDArray]:
-    """Value and slope at x = 0 of a polynomial per row, outliers down-weighted (Tukey's biweight), shape (P,) each."""
+def _robust_fit(x: NDArray, y: NDArray, order: int, noise: float) -> tuple[NDArray, NDArray, NDArray]:
+    """Value, slope and half second derivative at x = 0 of a polynomial per row, shape (P,) each; Tukey's biweight."""
     known = np.isfinite(y)
     scale = np.abs(x).max(axis=1, keepdims=True)
     basis = (x / scale)[..., None] ** np.arange(order + 1)
@@ -141,5 +147,6 @@ def _robust_fit(x: NDArray, y: NDArray, order: int, noise: float) -> tuple[NDArr
         spread = 1.4826 * np.median(np.abs(residual), axis=1, keepdims=True)
         u = residual / (4 * np.maximum(spread, noise))
         weight = np.where(known & (np.abs(u) < 1), (1 - u**2) ** 2, 0.0)
-    enough = known.mean(axis=1) >= 0.5
-    return np.where(enough, coefficients[:, 0], np.nan), np.where(enough, coefficients[:, 1] / scale[:, 0], np.nan)
+    coefficients[known.mean(axis=1) < 0.5] = np.nan
+    powers = np.pad(coefficients, ((0, 0), (0, 2)))[:, :3] / scale ** np.arange(3)
+    return powers[:, 0], powers[:, 1], powers[:, 2]

@@ -4,8 +4,9 @@ Bone mask in, `Prosthesis` out. Source: the VISAPP 2011 paper, doi 10.5220/00033
 
 Faithful is `design(bone, **paper_options(bone))`: axial slices, skeleton and convex hull, tangent lines, the constant
 pressure, 21 snaxels, the hull for slices of partial loss. The defaults are ours: slices that fan out from inside the
-head and cross the hole in several directions, whose answers meet in the median; rims seen along rays; tangents at the
-rim itself, shared between neighbouring slices; a start curve and a pressure that follow from them (`curves.spiral`).
+head and cross the hole in several directions, whose answers are averaged by their certainty; rims seen along rays;
+tangents at the rim itself, shared between neighbouring slices; a start curve and a pressure that follow from them
+(`curves.spiral`).
 """
 
 from __future__ import annotations
@@ -25,6 +26,9 @@ from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
 from ..volume import Volume
 
+_TANGENT_ERROR, _TURN_ERROR = 0.05, 0.3  # radians of tangent error on sound bone, and per radian its rim bends
+_POINT_ERROR = 0.1  # mm: what a curve is off at its own ends
+
 
 @dataclass(frozen=True, eq=False)
 class SliceResult:
@@ -42,6 +46,8 @@ class SliceResult:
         Outer and inner gap ends, slice (row, col); empty unless status is "balloon".
     start, curves : ndarray, shape (2, n, 2)
         Outer and inner start and final curve, slice (row, col); empty for "hull" and "skipped".
+    turns : ndarray, shape (2, 2)
+        [boundary, end]: how much the rim's own bone bends (see `rays.RimFits`), radians; 1 where unknown.
     values : dict
         theta0, theta1 (degrees), length (slice units), n_iter, converged: lists [outer, inner].
     """
@@ -52,6 +58,7 @@ class SliceResult:
     ends: tuple[GapEnds, ...] = ()
     start: Points = field(default_factory=lambda: np.empty((0, 0, 2)))
     curves: Points = field(default_factory=lambda: np.empty((0, 0, 2)))
+    turns: NDArray[np.float64] = field(default_factory=lambda: np.ones((2, 2)))
     values: dict[str, Any] = field(default_factory=dict)
 
 
@@ -95,8 +102,8 @@ def design(
     *,
     axial: bool = False,
     directions: int = 6,
-    skip: float = 2.0,
-    reach: float = 12.0,
+    skip: float = 1.5,
+    reach: float = 10.0,
     pressure: float | None = None,
     n_snaxels: int = 41,
     tension: float = 1.0,
@@ -104,7 +111,7 @@ def design(
     dt: float = 1.0,
     tol: float = 1e-3,
     max_iter: int = 2000,
-    coupling: float = 6.0,
+    coupling: float = 4.0,
     smooth: bool = True,
     progress: Callable[[str, float], None] | None = None,
 ) -> Prosthesis:
@@ -203,40 +210,50 @@ def _axial(
 def _fanned(
     bone: Volume, one: Lesion, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
 ) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
-    """Slices of one lesion in several directions, and the patch between the medians of their curves."""
+    """Slices of one lesion in several directions, and the patch between the means of their curves."""
     vault = chart.look(bone, one)
-    made, maps = [], []
+    made, radii, weights = [], [], []
     for fan in slicing.fans(vault, directions):
         profile = slicing.profile(vault, fan)
         results = _carry(_inflate(_by_rays(profile, skip, reach, coupling), np.zeros(2), curve))
         made.append(SlicedDesign(one, fan.frames(vault.eye), 1.0, tuple(results)))
         at = fan.locate(vault.directions[vault.hole])
-        maps.append([_radii_at(results, b, profile, at) for b in (0, 1)])
+        both = [_on_rays(results, b, profile) for b in (0, 1)]
+        radii.append([ndimage.map_coordinates(r, at, order=1, cval=np.nan) for r, _ in both])
+        weights.append([ndimage.map_coordinates(w, at, order=1, cval=0.0) for _, w in both])
     outer, inner = np.full((2, *vault.hole.shape), np.nan)
-    with np.errstate(all="ignore"):
-        outer[vault.hole], inner[vault.hole] = _median(np.array(maps))
+    outer[vault.hole], inner[vault.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return made, np.zeros(bone.shape, bool)
     return made, chart.voxelise(vault, outer, inner, bone)
 
 
-def _median(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Median over the first axis without the unknown; nan where all are unknown."""
-    ranked = np.sort(values, axis=0)  # nan last
-    known = np.isfinite(values).sum(axis=0)[None]
-    low, high = np.maximum((known - 1) // 2, 0), np.maximum(known // 2, 0)
-    pick = [np.take_along_axis(ranked, np.minimum(k, len(values) - 1), axis=0)[0] for k in (low, high)]
-    return (pick[0] + pick[1]) / 2
+def _weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean over the first axis of what is known; nan where nothing is."""
+    weights = np.where(np.isfinite(values), weights, 0.0)
+    total = weights.sum(axis=0)
+    return np.where(total > 0, (weights * np.nan_to_num(values)).sum(axis=0) / np.where(total > 0, total, 1.0), np.nan)
 
 
-def _radii_at(results: list[SliceResult], boundary: int, profile: rays.RayProfile, at: NDArray) -> NDArray:
-    """Radii of the curves of a fan at fractional (slice, ray) places (2, n), nan where no curve passes."""
-    radii = np.full(profile.outer.shape, np.nan)
+def _on_rays(results: list[SliceResult], boundary: int, profile: rays.RayProfile) -> tuple[NDArray, NDArray]:
+    """Radius of a fan's curves along the rays of its slices, and its weight; shape (P, K), nan and 0 elsewhere.
+
+    A tangent that is wrong by an angle e at the end moves a cubic by e L t (1 - t)^2, so a point is the surer the
+    shorter the slice's way across the hole, the nearer its rim, and the less the rim's own bone bends.
+    """
+    radii, weights = np.full(profile.outer.shape, np.nan), np.zeros(profile.outer.shape)
     for s in results:
-        if s.curves.size:
-            row, col = s.curves[boundary].T
-            radii[s.plane] = np.interp(profile.angles, np.arctan2(col, -row), np.hypot(row, col), np.nan, np.nan)
-    return ndimage.map_coordinates(radii, at, order=1, mode="constant", cval=np.nan)
+        if not s.curves.size:
+            continue
+        row, col = s.curves[boundary].T
+        angle = np.arctan2(col, -row)
+        radii[s.plane] = np.interp(profile.angles, angle, np.hypot(row, col), np.nan, np.nan)
+        t = np.clip((profile.angles - angle[0]) / (angle[-1] - angle[0]), 0, 1)
+        length = np.hypot(row[-1] - row[0], col[-1] - col[0])
+        slips = _TANGENT_ERROR**2 + (_TURN_ERROR * s.turns[boundary]) ** 2
+        error = length**2 * (slips[0] * (t * (1 - t) ** 2) ** 2 + slips[1] * (t**2 * (1 - t)) ** 2)
+        weights[s.plane] = 1 / (error + _POINT_ERROR**2)
+    return radii, weights
 
 
 def _by_skeleton(slices: NDArray[np.bool_], opening: NDArray[np.bool_], skip: float, reach: float) -> list[SliceResult]:
@@ -259,11 +276,12 @@ def _by_rays(profile: rays.RayProfile, skip: float, reach: float, coupling: floa
     """Gap ends of every slice of a fan, tangents shared between neighbours."""
     rims = rays.fit_rims(profile, skip=skip, reach=reach)
     tangents = rays.share_tangents(rims.tangents, coupling)
+    turns = ndimage.median_filter(np.nan_to_num(rims.turns, nan=1.0), size=(2 * round(coupling) + 1, 1, 1))
     results = []
     for plane in np.flatnonzero(profile.missing.any(axis=1)):
         if np.isfinite(tangents[plane]).all():
             ends = tuple(GapEnds(rims.points[plane, b], tangents[plane, b]) for b in (0, 1))
-            results.append(SliceResult(int(plane), "balloon", ends=ends))
+            results.append(SliceResult(int(plane), "balloon", ends=ends, turns=turns[plane]))
         else:
             results.append(SliceResult(int(plane), "skipped", "too little bone beside the gap to fit a tangent to"))
     return results
