@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cranio_nb.lesion import find
+from cranio_nb.prosthesis import Lesion
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case
 
@@ -39,6 +41,12 @@ def phantom() -> Callable[..., Case]:
 def skull(phantom) -> Callable[..., Volume]:
     """`skull(defect, seed)`: the bone left in the tiny phantom, by voxel centres."""
     return lambda defect="unilateral", seed=0: Volume(phantom(defect, seed).bone, phantom(defect, seed).affine)
+
+
+@pytest.fixture(scope="session")
+def lesions(skull) -> Callable[..., tuple[Lesion, ...]]:
+    """`lesions(defect, seed)`: the openings found in `skull(defect, seed)`, once."""
+    return cache(lambda defect="unilateral", seed=0: find(skull(defect, seed)))
 
 
 @pytest.fixture(scope="session")

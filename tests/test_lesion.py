@@ -30,10 +30,10 @@ def matched(lesions, case):
 
 
 @pytest.mark.parametrize("defect", OPEN)
-def test_every_opening_of_a_named_defect_is_found_where_it_is(defect, phantom, skull):
-    case, lesions = phantom(defect), find(skull(defect))
-    assert len(lesions) == len(DEFECTS[defect])
-    for planes, centre, mask, lesion in matched(lesions, case):
+def test_every_opening_of_a_named_defect_is_found_where_it_is(defect, phantom, lesions):
+    case, found = phantom(defect), lesions(defect)
+    assert len(found) == len(DEFECTS[defect])
+    for planes, centre, mask, lesion in matched(found, case):
         # the sheet and a bevelled piece of a sphere do not weigh a hole's places alike
         assert np.linalg.norm(lesion.centre - centre) < 5.0
         np.testing.assert_allclose(lesion.planes, planes, atol=1)
@@ -44,18 +44,18 @@ def test_every_opening_of_a_named_defect_is_found_where_it_is(defect, phantom, s
         assert lesion.direction @ outwards / np.linalg.norm(outwards) > np.cos(np.radians(2))
 
 
-def test_openings_come_largest_first_and_share_an_eye(skull):
-    lesions = find(skull("multiple"))
-    sizes = [lesion.opening.voxels.sum() for lesion in lesions]
+def test_openings_come_largest_first_and_share_an_eye(lesions):
+    found = lesions("multiple")
+    sizes = [lesion.opening.voxels.sum() for lesion in found]
     assert sizes == sorted(sizes, reverse=True)
-    for lesion in lesions[1:]:
-        np.testing.assert_array_equal(lesion.head_centre, lesions[0].head_centre)
-        assert not (lesion.opening.voxels & lesions[0].opening.voxels).any()
+    for lesion in found[1:]:
+        np.testing.assert_array_equal(lesion.head_centre, found[0].head_centre)
+        assert not (lesion.opening.voxels & found[0].opening.voxels).any()
 
 
-def test_two_openings_are_the_two_found_alone(phantom, skull):
+def test_two_openings_are_the_two_found_alone(phantom, lesions):
     """Far-apart defects do not see each other: their union is that of the single runs."""
-    case, both = phantom("bilateral"), find(skull("bilateral"))
+    case, both = phantom("bilateral"), lesions("bilateral")
     for _, _, mask, lesion in matched(both, case):
         alone = Volume(case.bone | (case.implant & ~mask), case.affine)
         (single,) = find(alone)
@@ -129,9 +129,8 @@ def rotated(affine, degrees, shift):
 
 
 @pytest.mark.parametrize("degrees", [(0, 0, 0), (38, 0, 0), (0, 25, 15), (-20, 12, -30)])
-def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, skull):
-    bone = skull("unilateral")
-    (here,) = find(bone)
+def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, skull, lesions):
+    bone, (here,) = skull("unilateral"), lesions("unilateral")
     there_affine = rotated(bone.affine, degrees, (311.0, -47.5, 905.0))
     (there,) = find(Volume(bone.voxels, there_affine))
     np.testing.assert_array_equal(there.opening.voxels, here.opening.voxels)
@@ -141,9 +140,9 @@ def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, sku
 
 
 @pytest.mark.parametrize("defect", ["unilateral", "frontal", "vertex"])
-def test_flipping_left_and_right_mirrors_the_opening(defect, skull):
+def test_flipping_left_and_right_mirrors_the_opening(defect, skull, lesions):
     bone = skull(defect)
-    (one,), (other,) = find(bone), find(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
+    (one,), (other,) = lesions(defect), find(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
     a, b = one.opening.voxels, other.opening.voxels[:, :, ::-1]
     thick = np.ones((3, 3, 3), bool)
     assert not (a & ~ndimage.binary_dilation(b, thick)).any()
@@ -151,12 +150,12 @@ def test_flipping_left_and_right_mirrors_the_opening(defect, skull):
     assert one.planes == other.planes
 
 
-def test_air_around_the_head_changes_nothing(skull):
+def test_air_around_the_head_changes_nothing(skull, lesions):
     bone = skull("round")
     padded_affine = bone.affine.copy()
     padded_affine[:3, 3] = bone.to_world([-3, -6, -9])
     padded = Volume(np.pad(bone.voxels, ((3, 3), (6, 6), (9, 9))), padded_affine)
-    (here,), (there,) = find(bone), find(padded)
+    (here,), (there,) = lesions("round"), find(padded)
     np.testing.assert_allclose(there.head_centre, here.head_centre, atol=2.0)
     np.testing.assert_allclose(there.centre, here.centre, atol=1.0)
 

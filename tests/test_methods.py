@@ -118,8 +118,8 @@ def test_the_patch_agrees_with_the_missing_bone_as_well_as_claimed(defect, metho
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
-def test_the_sides_look_out_in_and_at_the_bone(defect, designed, skull):
-    made, (lesion,) = designed(defect), find(skull(defect))
+def test_the_sides_look_out_in_and_at_the_bone(defect, designed, lesions):
+    made, (lesion,) = designed(defect), lesions(defect)
     assert len(made.sides) == len(made.mesh.faces)
     towards = made.mesh.centres - lesion.head_centre
     away = np.linalg.norm(towards, axis=1)
@@ -168,10 +168,10 @@ def test_a_whole_skull_needs_none(method, phantom):
 def test_two_holes_get_the_union_of_their_patches(method):
     case = phantom_case("tiny", "bilateral", 0, diameter=24.0)
     bone = Volume(case.bone, case.affine)
-    lesions = find(bone)
-    assert len(lesions) == 2
-    both = run(method, bone, lesions)
-    single = [run(method, bone, (lesion,)).patch.voxels for lesion in lesions]
+    found = find(bone)
+    assert len(found) == 2
+    both = run(method, bone, found)
+    single = [run(method, bone, (lesion,)).patch.voxels for lesion in found]
     np.testing.assert_array_equal(both.patch.voxels, single[0] | single[1])
     assert check_mesh(both.mesh).n_parts == 2
     truth = Volume(case.implant, case.affine)
