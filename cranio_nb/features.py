@@ -139,11 +139,17 @@ def fit_line(points: Points) -> tuple[Points, Points]:
     return centre, np.linalg.svd(points - centre, full_matrices=False)[2][0]
 
 
-def _unforked(spine: Points, depth: NDArray[np.float64], full: float = 0.8) -> Points:
-    """The spine without its ends in the corners of the cut: from where it first lies at `full` of its usual depth."""
+def _unforked(spine: Points, depth: NDArray[np.float64]) -> Points:
+    """The spine without its ends in the corners of the cut, where it lies shallower than in the bone behind."""
     along = depth[tuple(spine.astype(np.intp).T)]
-    deep = np.flatnonzero(along >= full * np.median(along))
-    return spine[deep[0] : deep[-1] + 1]
+    return spine[_corner(along) : len(spine) - _corner(along[::-1])]
+
+
+def _corner(depth: NDArray[np.float64], full: float = 0.8) -> int:
+    """Points from the start of a spine to where it has `full` of the depth behind, within two bone thicknesses."""
+    longest = round(4 * np.median(depth))
+    deep = depth[:longest] >= full * np.median(depth[longest : 3 * longest]) if len(depth) > longest else [True]
+    return int(np.argmax(deep))
 
 
 def _end(boundary: Points, spine: Points, skip: float, reach: float) -> tuple[Points, Points]:

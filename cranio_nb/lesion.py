@@ -22,6 +22,7 @@ _EYE_DEPTH = 85.0  # mm below the vertex: above the skull base, and the whole va
 _STEP = 1.5  # degrees between rays: 2 mm on the vault
 _SKY = 102.0  # degrees from the vertex down to which the vault is searched; further down lie orbits and base
 _BASE = 88.0  # degrees: an opening that lies wholly further down is an orbit, an ear canal, the base
+_EDGE = 3.0  # mm: a ray that leaves the image so far before its neighbours meet bone is not seen to the end
 _THIN_RIM, _THIN_HOLE = 1.5, 30.0  # mm: a small hole whose rim is as thin as paper was not cut
 _NEAR, _FAR = 25.0, 140.0  # mm from the eye between which the vault lies
 
@@ -111,13 +112,16 @@ def head_centre(bone: Volume) -> NDArray[np.float64]:
         ``NoVault`` when the mask spans less than a vault.
     """
     points = _thin_points(bone)  # along the grid's own axes: a rotated header moves the eye with the head
+    no_vault = InputRefused(
+        "NoVault", "The bone found does not span a skull vault (60 mm wanted each way).", "Is this a head CT?"
+    )
+    if not len(points):
+        raise no_vault
     top = np.quantile(points[:, 0], 0.9995)
     vault = points[points[:, 0] > top - _EYE_DEPTH]
     low, high = np.quantile(vault[:, 1:], [0.005, 0.995], axis=0)
     if (high - low).min() < 60:
-        raise InputRefused(
-            "NoVault", "The bone found does not span a skull vault (60 mm wanted each way).", "Is this a head CT?"
-        )
+        raise no_vault
     return bone.to_world(np.array([top - _EYE_DEPTH, *(low + high) / 2]) / bone.spacing)
 
 
@@ -172,16 +176,20 @@ def _cast(bone: Volume, eye: NDArray, directions: NDArray) -> tuple[NDArray, NDA
         plane, row, col = np.rint(at[inside]).astype(np.intp).T
         hit = np.flatnonzero(inside)[bone.voxels[plane, row, col]]
         radius[hit] = length
-    typical = np.nanmedian(radius) if np.isfinite(radius).any() else _FAR
     shape = directions.shape[:2]
-    return radius.reshape(shape), (last_seen > typical - 25).reshape(shape)
+    radius, last_seen = radius.reshape(shape), last_seen.reshape(shape)
+    return radius, last_seen >= _extended(radius) - _EDGE
+
+
+def _extended(radius: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Radius map with its unknown rays filled from the nearest known one."""
+    nearest = ndimage.distance_transform_edt(np.isnan(radius), return_distances=False, return_indices=True)
+    return radius[tuple(nearest)]
 
 
 def _bridge(sky: Sky, parts: list[NDArray[np.bool_]]) -> NDArray[np.float64]:
     """Radius of a membrane across the openings, shape (M, M), mm: harmonic between the rims."""
-    radius = sky.radius.copy()
-    _, nearest = ndimage.distance_transform_edt(np.isnan(radius), return_indices=True)
-    radius = radius[tuple(nearest)]
+    radius = _extended(sky.radius)
     hole = np.logical_or.reduce(parts)
     for _ in range(200):
         radius[hole] = ndimage.uniform_filter(radius, 3)[hole]

@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
-from matplotlib.figure import Figure
 
 from . import __version__, plot
 from .implant import implant_data
@@ -232,6 +231,6 @@ def _scale_top(truth: TruthCheck) -> float:
     return max(0.5, float(np.ceil(high * 2) / 2))
 
 
-def _shot(figure: Figure, alt: str, caption: str) -> Shot:
+def _shot(figure: plot.Figure, alt: str, caption: str) -> Shot:
     data = base64.b64encode(plot.png(figure)).decode("ascii")
     return Shot(data, alt, caption, round(float(figure.get_figwidth() * figure.dpi)))

@@ -109,7 +109,6 @@ def test_a_square_cut_forks_the_skeleton_and_the_spine_does_not_follow(ring):
     assert (np.hypot(*np.diff(spine, axis=0).T) < 1.5).all()  # one path, in order
 
 
-@pytest.mark.xfail(strict=True, reason="the spine is cut back to where it has 0.8 of its median depth, fork or not")
 def test_bone_that_is_thin_beside_the_gap_belongs_to_the_spine(ring):
     """As at a temple: 12 px beside the gap, 20 px elsewhere."""
     bone = ring(190, OUTER, half_gap=10, **LARGE) | ring(INNER, OUTER, half_gap=60, **LARGE)

@@ -100,9 +100,7 @@ def test_methods_do_not_import_each_other():
 @pytest.mark.parametrize(
     "library",
     [
-        pytest.param(
-            "matplotlib", marks=pytest.mark.xfail(strict=True, reason="report imports Figure to annotate with")
-        ),
+        "matplotlib",
         "pyvista",
         "ipywidgets",
     ],
