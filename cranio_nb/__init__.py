@@ -1,6 +1,34 @@
 """cranio_nb: from a head CT with a hole in the skull to the prosthesis that closes it.
 
-A teaching and research tool. Not a medical device.
+For teaching and research. Not a medical device, not for clinical use.
+
+The rooms, from the ground up; imports go down only, and rooms on one floor do not import each other unless said so.
+
+========  ====================================================================================================
+Nouns     `volume` voxels and where they stand; `curves` plane curves, gap ends, the chord frame; `mesh`
+          triangles; `prosthesis` lesion, prosthesis, a row of Table 3; `errors` one sentence and a remedy
+Stages    `readers` scan -> CT; `segment` CT -> bone; `lesion` bone -> openings; `features` slice -> gap ends;
+          `balloon` gap ends -> curves; `fill` curves -> patch; `surface` patch -> mesh; `evaluate` patch and
+          truth -> measures; `fit` and `implant` prosthesis -> what a workshop asks; `export` -> files
+Vault     `chart` the vault as radius maps; `rays` gap ends for real skulls; `slicing` planes to cut along
+          (sees the other two)
+Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share
+Methods   `methods.slicewise` the paper; every method is `design(bone, lesions, *, options) -> Prosthesis`, and
+          `catalogue` knows them by name
+Outside   `run` the pipeline as one call; `tables`, `render`, `plot`, `report`, `outputs`, `console`, `doctor`,
+          `cli`. Only `plot` imports matplotlib
+========  ====================================================================================================
+
+Data's way: scan -> CT -> bone -> lesion -> [slice: gap ends -> balloon -> fill] -> patch -> mesh -> `Prosthesis`.
+
+Frames. Conversions happen only in `Volume`, in `ChordFrame` and in the frames of `slicing`.
+
+=====  ===================  =====  ==========================================================================
+voxel  (plane, row, col)    index  planes rise to the top of the head, rows to the back, columns to the left
+slice  (row, col)           px     of a plane of the scan; mm in a plane of `slicing`
+chord  (along, out)         px     along the line between the two ends of a gap, and out of the head
+world  (x, y, z)            mm     DICOM LPS: x to the patient's left, y to the back, z to the top of the head
+=====  ===================  =====  ==========================================================================
 """
 
 __version__ = "0.1.0"

@@ -23,6 +23,7 @@ _BESIDE = 42.0  # degrees of vault looked at beside the hole
 _LARGEST = 115.0  # degrees from the chart's middle: further out the chart tears
 _DEPTH, _HEIGHT = 16.0, 12.0  # mm below and above the expected outer surface where the vault is looked for
 _SAMPLE = 0.4  # mm along a ray
+_FAR_APART = 1.5  # mm between planes above which their stairs would show
 _BREAK = 3.0  # mm without bone along a ray that is still diploe
 
 
@@ -235,7 +236,7 @@ def _field(bone: Volume, chart: RadialChart, expected: NDArray) -> tuple[NDArray
     low = np.clip(np.floor(index.min(axis=0)).astype(int) - 2, 0, np.array(bone.shape) - 1)
     high = np.clip(np.ceil(index.max(axis=0)).astype(int) + 3, low + 1, bone.shape)
     box = bone.crop((slice(low[0], high[0]), slice(low[1], high[1]), slice(low[2], high[2])))
-    far_apart = bone.spacing[0] > 2 * bone.spacing[1:].max()
+    far_apart = bone.spacing[0] > _FAR_APART
     return (_plane_distances(box.voxels) if far_apart else box.voxels.astype(np.float32)), box
 
 

@@ -36,7 +36,7 @@ _NIFTI_TYPES = ("uint8", "int16", "int32", "float32", "float64")
 _LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 
-def write_mesh(mesh: Mesh, path: str | Path, *, n_parts: int = 1) -> None:
+def write_mesh(mesh: Mesh, path: str | Path, *, n_parts: int = 1, report: MeshReport | None = None) -> None:
     """Write a solid as binary STL, PLY or 3MF.
 
     Parameters
@@ -47,6 +47,8 @@ def write_mesh(mesh: Mesh, path: str | Path, *, n_parts: int = 1) -> None:
         The suffix chooses the format: .stl, .ply or .3mf.
     n_parts : int
         Number of pieces the mesh is meant to have.
+    report : MeshReport, optional
+        `check_mesh` of this mesh, where it has been made already.
 
     Raises
     ------
@@ -58,11 +60,11 @@ def write_mesh(mesh: Mesh, path: str | Path, *, n_parts: int = 1) -> None:
     suffix = path.suffix.lower()
     if suffix not in MESH_FORMATS:
         raise CannotWrite("BadFormat", f"{path.name} has no known mesh suffix; use {', '.join(MESH_FORMATS)}.")
-    validate(mesh, n_parts=n_parts)
+    validate(mesh, n_parts=n_parts, report=report)
     _write_whole(path, _trimesh(mesh).export(file_type=suffix[1:]), lambda part: _check_mesh_file(part, mesh))
 
 
-def validate(mesh: Mesh, *, n_parts: int = 1) -> MeshReport:
+def validate(mesh: Mesh, *, n_parts: int = 1, report: MeshReport | None = None) -> MeshReport:
     """Make sure that a mesh is a solid.
 
     Parameters
@@ -71,6 +73,8 @@ def validate(mesh: Mesh, *, n_parts: int = 1) -> MeshReport:
         World mm.
     n_parts : int
         Number of pieces wanted.
+    report : MeshReport, optional
+        `check_mesh` of this mesh, where it has been made already.
 
     Returns
     -------
@@ -82,7 +86,7 @@ def validate(mesh: Mesh, *, n_parts: int = 1) -> MeshReport:
     CannotWrite
         MeshInvalid, saying the first thing that is wrong.
     """
-    report = check_mesh(mesh)
+    report = check_mesh(mesh) if report is None else report
     faults = {
         "it has no faces": report.n_faces == 0,
         f"{report.n_unclear} faces are not finite, have no area or are there twice": report.n_unclear > 0,

@@ -112,7 +112,8 @@ def write_outputs(result: RunResult, folder: Path, tell: Callable[[str, float], 
 
     tell = tell or (lambda step, done: None)
     tell("writing", 0.85)
-    export.write_mesh(result.prosthesis.mesh, folder / "prosthesis.stl", n_parts=result.mesh.n_parts)
+    stl, report = folder / "prosthesis.stl", result.mesh
+    export.write_mesh(result.prosthesis.mesh, stl, n_parts=report.n_parts, report=report)
     if result.prosthesis.patch is not None:
         export.write_nifti(result.prosthesis.patch, folder / "patch.nii.gz", order=result.load.order)
     export.write_json(folder / "design.json", design_record(result))

@@ -1,0 +1,208 @@
+"""How good the designs are: prints the tables of the paper beside ours, and scores on real skulls where there are any.
+
+    python benchmarks/accuracy.py [--only phantom|skullfix|dryskull|tilt]
+
+Real data is looked for in the folder named by CRANIO_NB_DATA; without it only the synthetic part is printed.
+SkullFix (Kodym et al. 2021, doi 10.1016/j.dib.2021.106902) is non-commercial; nothing of it is part of this project.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy import ndimage
+
+import data_synth
+from cranio_nb import evaluate, fill, lesion, surface
+from cranio_nb.errors import CranioError
+from cranio_nb.methods import slicewise
+from cranio_nb.prosthesis import INNER, OUTER, Prosthesis
+from cranio_nb.readers import read_ct
+from cranio_nb.segment import segment
+from cranio_nb.tables import PAPER_BALLOONS, PAPER_DISTANCES
+from cranio_nb.volume import Volume
+
+HALF_MAXIMUM = 620.0
+"""HU midway between the phantom's cortical bone (1200) and its brain (35): where a blurred edge really lies."""
+
+
+def phantom(defect: str = "unilateral", seed: int = 1) -> None:
+    case = data_synth.phantom_case("full", defect, seed)
+    truth = Volume(case.implant, case.affine)
+    planes = np.flatnonzero(case.implant.any(axis=(1, 2)))
+    print(f"\n== Phantom, full (512 x 512 x 68), {defect}: loss in {len(planes)} of {len(case.hu)} slices (paper: 23)")
+    for name, paper, threshold in (
+        ("paper preset", True, 400.0),
+        ("default", False, 400.0),
+        ("default, half-maximum threshold", False, HALF_MAXIMUM),
+    ):
+        bone = segment(Volume(case.hu, case.affine), threshold=threshold)
+        made = slicewise.design(bone, **(slicewise.paper_options(bone) if paper else {}))
+        score = evaluate.score(made.patch, truth, bone)
+        print(f"\n-- {name} (HU >= {threshold:g}); DSC {score.dice:.3f}, HD95 {score.hd95:.2f} mm")
+        print("   slices:", dict(Counter(s["status"] for s in made.record["slices"])))
+        balloon_tables(made)
+        distance_table(made, reference(truth, bone), bone, "the truth")
+        if paper:
+            mirrored = mirror(case, bone)
+            distance_table(made, reference(mirrored, bone), bone, "the reflection")
+
+
+def balloon_tables(made: Prosthesis) -> None:
+    """Tables 1 and 2: range of angles, iterations; and the number of snaxels."""
+    slices = [s for s in made.record["slices"] if "theta0" in s]
+    print(f"   snaxels {made.parameters['n_snaxels']} (paper: 21)")
+    for side, name in enumerate(("outer", "inner")):
+        parts = []
+        for key, label in (("theta0", "theta0"), ("theta1", "theta1"), ("n_iter", "iterations")):
+            values = [s[key][side] for s in slices]
+            low, high = PAPER_BALLOONS[name][key]
+            parts.append(f"{label} {min(values):.0f}..{max(values):.0f} (paper {low}..{high})")
+        done = sum(s["converged"][side] for s in slices)
+        print(f"   Table {side + 1}, {name}: " + ", ".join(parts) + f", converged {done} of {len(slices)}")
+
+
+def distance_table(made: Prosthesis, truth: Prosthesis, bone: Volume, against: str) -> None:
+    """Table 3: one way, in pixels."""
+    px = float(bone.spacing[1:].mean())
+    for side, name, paper_name in ((OUTER, "top", "outer"), (INNER, "inner", "inner")):
+        d = evaluate.surface_distance(made.surface(side).vertices, truth.surface(side)) / px
+        s = evaluate.distance_stats(d)
+        p = PAPER_DISTANCES[paper_name]
+        print(
+            f"   Table 3, {name} against {against}, px: min {s.min:.2f} max {s.max:.2f} mean {s.mean:.2f}"
+            f" std {s.std:.2f}  p99 {np.percentile(d, 99):.2f}   (paper: max {p.max}, mean {p.mean}, std {p.std})"
+        )
+
+
+def reference(truth: Volume, bone: Volume) -> Prosthesis:
+    mesh = surface.extract(truth)
+    return Prosthesis(mesh, surface.face_sides(mesh, bone, lesion.head_centre(bone)), truth, "truth")
+
+
+def mirror(case: Any, bone: Volume) -> Volume:
+    """The paper's reference: the skull mirrored through the phantom's middle, off the bone, the piece in the hole."""
+    middle = bone.to_voxel(case.head.centre)[2]
+    columns = np.rint(2 * middle - np.arange(bone.shape[2])).astype(int)
+    known = (columns >= 0) & (columns < bone.shape[2])
+    flipped = np.zeros(bone.shape, bool)
+    flipped[:, :, known] = bone.voxels[:, :, columns[known]]
+    opening = lesion.find(bone)[0].opening.voxels
+    near = ndimage.binary_dilation(opening, np.ones((3, 13, 13)))
+    return bone.with_voxels(fill.main_piece(ndimage.binary_opening(flipped & ~bone.voxels & near), opening))
+
+
+def skullfix(folder: Path) -> None:
+    print("\n== SkullFix cases (real skulls, true implants), no hints given")
+    for label, options in (
+        ("default, 6 directions", {}),
+        ("best single direction", {"directions": 1}),
+        ("axial, as the paper", None),
+    ):
+        rows = [skullfix_case(case, options) for case in sorted((folder / "skullfix/cases").iterdir())]
+        print_scores(label, rows)
+    print("\n== SkullFix varied (no truth): openings found, volume, slices")
+    for path in sorted((folder / "skullfix/varied").glob("*.nrrd")):
+        bone = segment(read_ct(path)[0])
+        made = slicewise.design(bone)
+        volume = made.mesh.volume / 1000
+        print(f"   {path.stem}: {volume:.1f} cm3, {dict(Counter(s['status'] for s in made.record['slices']))}")
+
+
+def skullfix_case(case: Path, options: dict[str, Any] | None) -> dict[str, Any]:
+    bone = segment(read_ct(case / "defective.nrrd")[0])
+    truth = read_ct(case / "implant.nrrd")[0]
+    return scored(case.name, bone, truth, slicewise.paper_options(bone) if options is None else options)
+
+
+def scored(name: str, bone: Volume, truth: Volume, options: dict[str, Any]) -> dict[str, Any]:
+    """One row: the scores, the share of slices that were not bridged by themselves, the time."""
+    began = time.perf_counter()
+    try:
+        made = slicewise.design(bone, **options)
+    except CranioError as error:
+        return {"name": name, "failed": error.code}
+    seconds = time.perf_counter() - began
+    score = evaluate.score(made.patch, truth, bone)
+    slices = [s["status"] for s in made.record["slices"]]
+    why = Counter(s["reason"] for s in made.record["slices"] if s["status"] in ("carried", "skipped"))
+    lost = sum(why.values()) / len(slices)
+    return {"name": name, "score": score, "lost": lost, "seconds": seconds, "why": why}
+
+
+def print_scores(label: str, rows: list[dict[str, Any]]) -> None:
+    print(f"\n-- {label}\n   case       DSC  border   HD95  ASSD  volume  overlap  carried     s")
+    for row in rows:
+        if "failed" in row:
+            print(f"   {row['name']:9s} failed: {row['failed']}")
+            continue
+        s = row["score"]
+        print(
+            f"   {row['name']:9s} {s.dice:.3f}   {s.border_dice:.3f} {s.hd95:6.2f} {s.assd:5.2f}  {s.volume_ratio:6.2f}"
+            f"  {s.overlap:7d}  {row['lost']:6.1%} {row['seconds']:6.1f}"
+        )
+        if row["why"]:
+            print(f"             not bridged by themselves: {dict(row['why'])}")
+    dice = np.array([row["score"].dice if "score" in row else 0.0 for row in rows])
+    hd95 = np.array([row["score"].hd95 for row in rows if "score" in row])
+    print(f"   mean DSC {dice.mean():.3f} (worst {dice.min():.3f}), mean HD95 {hd95.mean():.2f} mm")
+
+
+def dryskull(folder: Path) -> None:
+    ct, report = read_ct(folder / "dicom/dryskull_multiseries")
+    print("\n== Dry skull (real CT):", next(f.message for f in report.findings if f.code == "SeriesChosen"))
+    rows = []
+    for defect in ("temporal", "frontal", "vertex"):
+        for seed in (1, 2, 3):
+            case = data_synth.cut_case(ct.voxels, ct.affine, defect, seed, is_mask=False)
+            bone, truth = segment(ct.with_voxels(case.hu)), ct.with_voxels(case.implant)
+            row = scored(f"{defect[:7]} {seed}", bone, truth, {})
+            rows.append(row | {"thickness": mean_thickness(truth)})
+    print_scores("virtual craniectomies", rows)
+    print("   thickness of the cut bone, mm:", ", ".join(f"{r['name']} {r['thickness']:.1f}" for r in rows))
+
+
+def mean_thickness(implant: Volume) -> float:
+    """Twice the volume over the surface: the mean thickness of a plate, mm."""
+    mesh = surface.extract(implant)
+    return 2 * mesh.volume / float(mesh.areas.sum())
+
+
+def tilt(folder: Path) -> None:
+    print("\n== Gantry tilt: size of the vault (left-right x front-back of the slice 50 mm below its top, mm)")
+    for name in ("dryskull_multiseries", "dryskull_tilt"):
+        ct, report = read_ct(folder / "dicom" / name)
+        bone = segment(ct)
+        points = bone.to_world(np.argwhere(bone.voxels))
+        level = points[np.abs(points[:, 2] - points[:, 2].max() + 50) < 2]
+        width, depth = np.ptp(level[:, :2], axis=0)
+        print(f"   {name}: {width:.1f} x {depth:.1f}, corner error {report.corner_error:.4f} mm")
+
+
+PARTS = {"phantom": phantom, "skullfix": skullfix, "dryskull": dryskull, "tilt": tilt}
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", choices=PARTS, help="print one part")
+    only = parser.parse_args().only
+    folder = os.environ.get("CRANIO_NB_DATA")
+    for name, part in PARTS.items():
+        if only not in (None, name):
+            continue
+        if name == "phantom":
+            part()
+        elif folder:
+            part(Path(folder))
+        else:
+            print(f"\n== {name}: skipped, CRANIO_NB_DATA names no folder of real scans")
+
+
+if __name__ == "__main__":
+    main()
