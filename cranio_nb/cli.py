@@ -97,7 +97,7 @@ def demo(out: Path, size: str) -> None:
     \b
     Examples:
       cranio-nb demo
-      cranio-nb demo --size tiny --out /tmp/demo
+      cranio-nb demo --size tiny --out demo_tiny
     """
     from data_synth import phantom_case
     from data_synth.files import write_case
