@@ -138,7 +138,7 @@ def _between(chart: RadialChart, spread: list[NDArray], region: NDArray, box: Vo
         radius = np.linalg.norm(away, axis=-1)
         at = chart.locate(away)
         near = np.rint(at).astype(np.intp)
-        seen = ((near >= 0) & (near < len(region))).all(axis=0)
+        seen = np.logical_and.reduce((near >= 0) & (near < len(region)))
         seen[seen] = region[near[0][seen], near[1][seen]]
         upper, lower = (ndimage.map_coordinates(r, at[:, seen], order=1, mode="nearest") for r in spread)
         inside[plane][seen] = (radius[seen] <= upper) & (radius[seen] >= lower)
@@ -205,7 +205,7 @@ def _robust_surface(v: NDArray, u: NDArray, values: NDArray, weight: NDArray):
 
 
 def _sample(bone: Volume, eye: NDArray, directions: NDArray, lengths: NDArray) -> NDArray[np.bool_]:
-    """Whether there is bone at given lengths (n,) or (..., n) along directions (..., 3); nearest voxel, shape (..., n)."""
+    """Whether the nearest voxel is bone at lengths (n,) or (..., n) along directions (..., 3), shape (..., n)."""
     step = directions @ np.linalg.inv(bone.affine[:3, :3]).T
     start = bone.to_voxel(eye)
     index = [np.rint(start[i] + step[..., i, None] * lengths).astype(np.int32) for i in range(3)]

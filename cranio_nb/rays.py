@@ -44,7 +44,7 @@ class RayProfile:
         """First and last missing ray of each slice, shape (P, 2); -1 where there is none."""
         first = self.missing.argmax(axis=1)
         last = self.missing.shape[1] - 1 - self.missing[:, ::-1].argmax(axis=1)
-        return np.where(self.missing.any(axis=1)[:, None], np.stack([first, last], axis=1), -1)
+        return np.where(self.missing.any(axis=1, keepdims=True), np.stack([first, last], axis=1), -1)
 
 
 @dataclass(frozen=True, eq=False)
