@@ -166,8 +166,8 @@ def _cast(bone: Volume, eye: NDArray, directions: NDArray) -> tuple[NDArray, NDA
     lengths = np.arange(_NEAR, _FAR, 0.75)
     start = bone.to_voxel(eye)
     steps = directions.reshape(-1, 3) @ np.linalg.inv(bone.affine[:3, :3]).T
-    radius = np.full(len(steps), np.nan)
-    last_seen = np.zeros(len(steps))
+    radius: NDArray[np.float64] = np.full(len(steps), np.nan)
+    last_seen: NDArray[np.float64] = np.zeros(len(steps))
     upper = np.array(bone.shape) - 0.5
     for length in lengths:
         at = start + length * steps
