@@ -15,7 +15,19 @@ from . import __version__
 
 _NEEDED: tuple[str, ...] = (
     *("numpy", "scipy", "scikit-image", "pydicom", "pyjpegls", "pylibjpeg-openjpeg", "pylibjpeg-libjpeg"),
-    *("nibabel", "pynrrd", "trimesh", "networkx", "lxml", "manifold3d", "click", "rich", "matplotlib", "jinja2"),
+    *(
+        "nibabel",
+        "pynrrd",
+        "trimesh",
+        "networkx",
+        "lxml",
+        "manifold3d",
+        "click",
+        "rich",
+        "matplotlib",
+        "pillow",
+        "jinja2",
+    ),
 )
 _OPTIONAL = {"lab": ("jupyterlab", "ipywidgets", "jupytext", "nbclient"), "view": ("pyvista",)}
 _MIN_MEMORY = 2.0  # GB

@@ -1,0 +1,14 @@
+"""The stages under sliders: one panel for each, with a picture that follows and a static twin of it.
+
+In a live notebook a panel has controls; anywhere else, and when ``CRANIO_NB_MODE`` says static, it is one picture
+with alternative text and one line of text that is the same on every run. Lengths on controls are in mm, angles in
+degrees, attenuation in HU; the balloon's own frame is px, as in the paper.
+"""
+
+from .bone import ct_viewer, threshold
+from .gap import features
+from .inflation import balloon
+from .mode import mode
+from .panel import Panel, View, static_twin
+
+__all__ = ["Panel", "View", "balloon", "ct_viewer", "features", "mode", "static_twin", "threshold"]

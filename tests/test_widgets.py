@@ -1,0 +1,270 @@
+"""Panels: the picture follows the controls, and says what the stage computed; the static twin has alt text."""
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from cranio_nb import balloon, features, segment, widgets
+from cranio_nb.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
+from cranio_nb.curves import ChordFrame, GapEnds, cubic
+from cranio_nb.errors import InputRefused
+from cranio_nb.volume import Volume
+from cranio_nb.widgets import inflation
+
+
+@pytest.fixture
+def live(monkeypatch):
+    monkeypatch.setenv("CRANIO_NB_MODE", "widget")
+    return pytest.importorskip("ipywidgets")
+
+
+@pytest.fixture
+def static(monkeypatch):
+    monkeypatch.setenv("CRANIO_NB_MODE", "static")
+
+
+@pytest.fixture(scope="session")
+def ct(phantom):
+    case = phantom()
+    return Volume(case.hu, case.affine)
+
+
+@pytest.fixture(scope="session")
+def opening(lesions):
+    return lesions()[0].opening
+
+
+@pytest.fixture(scope="session")
+def arch():
+    """A gap of 100 px whose tangents rise by 30 degrees at both ends."""
+    rise = np.radians(30)
+    tangents = [[-np.sin(rise), np.cos(rise)], [-np.sin(rise), -np.cos(rise)]]
+    return GapEnds(np.array([[120.0, 60.0], [120.0, 160.0]]), np.array(tangents))
+
+
+INSIDE = (200.0, 110.0)
+
+
+def pixels_of(panel):
+    """The picture on the widget, decoded."""
+    return np.asarray(Image.open(io.BytesIO(panel.front.image.value)).convert("RGB"))
+
+
+def close(jpeg, rgb):
+    return jpeg.shape == rgb.shape and np.abs(jpeg.astype(int) - rgb).mean() < 1.5
+
+
+def count(rgb, colour):
+    return int((np.abs(rgb.astype(int) - rgb_of(colour)).max(axis=-1) < 12).sum())
+
+
+@pytest.mark.parametrize(("asked", "found"), [("static", "static"), ("widget", "widget"), ("auto", "static")])
+def test_the_mode_is_what_was_asked_and_static_without_a_front_end(monkeypatch, asked, found):
+    monkeypatch.setenv("CRANIO_NB_MODE", asked)
+    assert widgets.mode() == found
+
+
+def test_an_unknown_mode_is_refused(monkeypatch):
+    monkeypatch.setenv("CRANIO_NB_MODE", "movie")
+    with pytest.raises(InputRefused, match="static, widget, auto"):
+        widgets.mode()
+
+
+def middle_plane(opening):
+    return int(np.median(np.flatnonzero(opening.voxels.any((1, 2)))))
+
+
+def make_all(ct, skull, opening, arch):
+    return {
+        "ct_viewer": widgets.ct_viewer(ct),
+        "threshold": widgets.threshold(ct),
+        "features": widgets.features(skull, middle_plane(opening), opening=opening),
+        "balloon": widgets.balloon(arch, INSIDE),
+    }
+
+
+@pytest.fixture(scope="session")
+def panels(ct, skull, opening, arch):
+    return lambda: make_all(ct, skull(), opening, arch)
+
+
+def test_every_static_panel_is_one_picture_with_alt_text_and_one_line(static, panels):
+    for name, panel in panels().items():
+        data, metadata = panel._repr_mimebundle_()
+        assert set(data) == {"image/png", "text/plain"}, name
+        shape = np.asarray(Image.open(io.BytesIO(data["image/png"]))).shape
+        assert shape == panel.view.rgb.shape and metadata["image/png"]["width"] == shape[1]
+        assert len(metadata["image/png"]["alt"]) > 40 and "\n" not in data["text/plain"], name
+
+
+def test_a_static_panel_is_the_same_on_every_run(static, panels):
+    first, second = ({n: p._repr_mimebundle_()[0] for n, p in panels().items()} for _ in range(2))
+    assert first == second
+
+
+def test_a_static_panel_makes_no_widget(static, panels):
+    for panel in panels().values():
+        panel._repr_mimebundle_()
+        assert "front" not in vars(panel)
+
+
+def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
+    moves = {"ct_viewer": ("width", 400), "threshold": ("hu", 900), "features": ("reach", 25.0), "balloon": ("n", 41)}
+    for name, panel in panels().items():
+        assert close(pixels_of(panel), panel.view.rgb), name
+        before = panel.front.image.value
+        control, value = moves[name]
+        panel.front.controls[control].value = value
+        assert panel.front.image.value != before, name
+        assert panel.values[control] == value
+        assert close(pixels_of(panel), panel._picture(**panel.values).rgb), name
+
+
+def test_every_control_is_labelled_and_within_its_limits(live, panels):
+    for panel in panels().values():
+        for name, widget in panel.front.controls.items():
+            assert widget.description and widget.tabbable is not False, name
+            if hasattr(widget, "max"):
+                assert widget.min <= widget.value <= widget.max
+
+
+def test_a_live_bundle_has_widget_picture_and_line(live, panels):
+    data, _ = panels()["threshold"]._repr_mimebundle_()
+    assert {"application/vnd.jupyter.widget-view+json", "image/png", "text/plain"} <= set(data)
+
+
+def test_a_grey_window_is_black_and_white_at_its_ends():
+    level = windowed(np.array([[-51.0, -50.0, 50.0, 150.0, 151.0]]), 50, 200)
+    np.testing.assert_array_equal(level[0, :, 0], [0, 0, 127, 255, 255])
+
+
+def test_the_threshold_line_counts_the_bone_of_the_slice(static, ct):
+    panel = widgets.threshold(ct).set(hu=700, max_hole=0, plane=25)
+    area = np.count_nonzero(segment.threshold_hu(ct.voxels[25], 700)) * np.prod(ct.spacing[1:]) / 100
+    assert f"{area:.1f} cm" in panel.view.line
+
+
+def test_holes_filled_are_drawn_green(static):
+    hu = np.full((1, 60, 60), 1000, np.int16)
+    hu[0, :8] = hu[0, -8:] = hu[0, :, :8] = hu[0, :, -8:] = hu[0, 28:32, 28:32] = -1000
+    ct = Volume(hu, np.diag([1.0, 1, 1, 1])[[2, 1, 0, 3]])
+    legend = count(widgets.threshold(ct).set(max_hole=0).view.rgb, GREEN)
+    hole = count(widgets.threshold(ct).set(max_hole=20).view.rgb, GREEN) - legend
+    assert hole == pytest.approx(16 * (512 / 60) ** 2, rel=0.1)
+
+
+def test_the_features_line_counts_the_points_of_the_stage(static, skull, opening):
+    bone, plane, px = skull(), middle_plane(opening), float(skull().spacing[1])
+    panel = widgets.features(bone, plane, opening=opening).set(skip=5.0, reach=12.0)
+    seen = features.slice_features(bone.voxels[plane])
+    ends = features.gap_ends(seen, opening.voxels[plane], skip=5 / px, reach=12 / px)
+    width = np.hypot(*np.diff(ends[0].points, axis=0)[0]) * px
+    assert f"{width:.1f} mm apart" in panel.view.line
+
+
+def test_a_slice_without_a_gap_says_so(static, skull, opening):
+    line = widgets.features(skull(), 2, opening=opening).view.line
+    assert line.startswith("Slice 2: ") and "carry" not in line
+
+
+def settings(panel):
+    return {name: value for name, value in panel.values.items() if name != "step"}
+
+
+@pytest.mark.parametrize("k", [0.0, 0.062, 0.3])
+def test_moving_k_moves_the_balloon_as_the_stage_says(live, arch, k):
+    panel = widgets.balloon(arch, INSIDE)
+    panel.front.controls["pressure"].value = k
+    rise = np.radians(30)
+    start = cubic(100.0, rise, np.pi - rise, 21)
+    slopes = np.array([[5.0, 5 * np.tan(rise)], [5.0, -5 * np.tan(rise)]])
+    curve = balloon.inflate(start, slopes, pressure=k).curve
+    assert f"apex {curve[:, 1].max():.1f} px" in panel.view.line
+    window = Window.around((0, 0, 512, 512), [48, 48], [162, 172])
+    at = window.px(ChordFrame.of(arch, INSIDE).to_slice(curve))[5:-5].round().astype(int)
+    shown = pixels_of(panel)
+    assert all(count(shown[y - 1 : y + 2, x - 1 : x + 2], BLUE) for x, y in at)
+
+
+def test_all_steps_are_kept_and_the_last_is_at_rest(arch):
+    run = inflation.inflation(100.0, (0.5, 2.6), inflation.PRESETS[0], 0.062, 21, 1.0, 1.0, 1.0, 1e-3)
+    assert run.converged and len(run.curves) == len(run.change) + 1
+    np.testing.assert_allclose(np.linalg.norm(np.diff(run.curves, axis=0), axis=(1, 2)), run.change, rtol=1e-9)
+    assert run.change[-1] <= 1e-3 < run.change[-2]
+
+
+def test_a_spiral_between_equal_angles_is_an_arc_from_the_start():
+    run = inflation.inflation(100.0, (0.5, np.pi - 0.5), inflation.PRESETS[2], 0.0, 41, 1.0, 1.0, 1.0, 1e-3)
+    radius = 50 / np.sin(0.5)
+    off = np.hypot(*(run.curves[0] - [50, -radius * np.cos(0.5)]).T) - radius
+    assert np.abs(off).max() < 1e-6
+
+
+def test_the_player_follows_the_number_of_steps(live, arch):
+    panel = widgets.balloon(arch, INSIDE)
+    step = panel.front.controls["step"]
+    assert step.value == step.max == 235 or step.value == step.max
+    few = step.max
+    panel.front.controls["dt"].value = 10.0
+    assert step.value == step.max < few
+    panel.front.controls["dt"].value = 1.0
+    assert step.value == step.max == few  # who stood at rest stays at rest
+    step.value = 3
+    panel.front.controls["pressure"].value = 0.1
+    assert step.value == 3 and panel.view.line.startswith("Step 3 of ")
+
+
+def test_the_end_pressure_leaves_k_without_effect(live, arch):
+    panel = widgets.balloon(arch, INSIDE)
+    panel.front.controls["preset"].value = inflation.PRESETS[1]
+    assert panel.front.controls["pressure"].disabled
+    before = panel.view.rgb
+    panel.set(pressure=0.2)
+    assert (panel.view.rgb == before).all()
+
+
+def test_a_panel_refuses_a_control_it_does_not_have(static, arch):
+    with pytest.raises(InputRefused, match="pressure"):
+        widgets.balloon(arch, INSIDE).set(kk=1)
+
+
+def test_of_many_waiting_calls_only_the_last_is_made(live):
+    import asyncio
+
+    from cranio_nb.widgets.live import Latest
+
+    done, wanted = [], []
+    later = Latest(lambda: done.append(wanted[-1]))
+
+    async def flood():
+        for i in range(50):
+            wanted.append(i)
+            later()
+        await asyncio.sleep(0.1)
+
+    asyncio.run(flood())
+    assert done == [0, 49]
+
+
+def test_a_static_twin_wants_words(static):
+    twin = widgets.static_twin(np.zeros((4, 6, 3), np.uint8), "A black box.", "black")
+    data, metadata = twin._repr_mimebundle_()
+    assert data["image/png"][:4] == b"\x89PNG" and metadata["image/png"]["alt"] == "A black box."
+    with pytest.raises(InputRefused):
+        widgets.static_twin(b"", " ", "line")
+
+
+def test_a_canvas_puts_a_slice_where_its_window_says():
+    rgb = np.zeros((40, 60, 3), np.uint8)
+    rgb[10, 20] = 255
+    canvas, window = Canvas(240, 160), Window.whole((0, 0, 240, 160), rgb.shape)
+    canvas.show(rgb, window)
+    y, x = np.argwhere(canvas.array()[..., 0] > 128).mean(axis=0)
+    np.testing.assert_allclose(window.px([10, 20]), [x + 0.5, y + 0.5], atol=0.6)
+
+
+@pytest.mark.parametrize(("longest", "length"), [(0.9, 0.5), (7.0, 5.0), (10.0, 10.0), (49.0, 20.0)])
+def test_round_lengths(longest, length):
+    assert round_length(longest) == length
