@@ -1,0 +1,11 @@
+"""The exercises of the lessons: the cases each is tried on, the answer, how answers are compared, typical mistakes."""
+
+from .curves import CURVES
+from .image import IMAGE
+from .solid import SOLID
+from .task import Exercise
+
+EXERCISES: dict[str, Exercise] = {**IMAGE, **CURVES, **SOLID}
+"""By number, lesson by lesson."""
+
+__all__ = ["EXERCISES", "Exercise"]

@@ -1,0 +1,87 @@
+"""What an exercise is, the ways to compare two answers, and the phantom that answers are tried on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+if TYPE_CHECKING:
+    from data_synth import Case
+
+
+@dataclass(frozen=True, eq=False)
+class Exercise:
+    """One exercise.
+
+    Parameters
+    ----------
+    cases : callable
+        () -> list of argument tuples; each is worth a point.
+    right : callable
+        The answer.
+    error : callable
+        (answer, right answer) -> how far apart they are, in `unit`.
+    unit : str
+    tolerance : float
+        Largest error that is right.
+    form : str
+        What an answer looks like, for those that cannot be compared.
+    mistakes : tuple of (callable, str)
+        Typical wrong answers, and what to say to whoever gives them.
+    hints : tuple of str
+        From a push to nearly all.
+    praise : str
+        What a right answer has shown.
+    """
+
+    cases: Callable[[], list[tuple[Any, ...]]]
+    right: Callable[..., Any]
+    error: Callable[[Any, Any], float]
+    unit: str
+    tolerance: float
+    form: str
+    mistakes: tuple[tuple[Callable[..., Any], str], ...]
+    hints: tuple[str, ...]
+    praise: str
+
+
+@cache
+def small_head() -> Case:
+    """The tiny phantom; its arrays are read-only."""
+    from data_synth import phantom_case
+
+    case = phantom_case("tiny")
+    for array in (case.hu, case.bone, case.implant, case.affine):
+        assert array is not None
+        array.setflags(write=False)
+    return case
+
+
+def largest_difference(answer: ArrayLike, right: ArrayLike) -> float:
+    """Largest absolute difference of two arrays or numbers of one shape."""
+    a, b = np.asarray(answer, float), np.asarray(right, float)
+    if a.shape != b.shape:
+        return float("inf")
+    return float(np.abs(a - b).max(initial=0.0))
+
+
+def different_pixels(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
+    """Number of pixels in which two masks differ; numbers other than 0 and 1 are no mask."""
+    a = np.asarray(answer)
+    if a.shape != right.shape or not np.isin(a, (0, 1)).all():
+        return float("inf")
+    return float(np.count_nonzero(a.astype(bool) ^ right))
+
+
+def degrees_apart(answer: ArrayLike, right: ArrayLike) -> float:
+    """Angle between two directions, whichever way they point, in degrees."""
+    a, b = np.asarray(answer, float), np.asarray(right, float)
+    if a.shape != b.shape or not np.linalg.norm(a) > 0:
+        return float("inf")
+    cosine = abs(a @ b) / np.linalg.norm(a) / np.linalg.norm(b)
+    return float(np.degrees(np.arccos(min(cosine, 1.0))))
