@@ -1,17 +1,21 @@
 """Panels: the picture follows the controls, and says what the stage computed; the static twin has alt text."""
 
 import io
+import json
 
 import numpy as np
 import pytest
 from PIL import Image
 
-from cranio_nb import balloon, features, segment, widgets
+from cranio_nb import balloon, evaluate, features, run, segment, widgets
 from cranio_nb.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
+from cranio_nb.catalogue import check_options, default_options
 from cranio_nb.curves import ChordFrame, GapEnds, cubic
 from cranio_nb.errors import InputRefused
+from cranio_nb.methods import slicewise
+from cranio_nb.prosthesis import INNER
 from cranio_nb.volume import Volume
-from cranio_nb.widgets import inflation
+from cranio_nb.widgets import inflation, tuning
 
 
 @pytest.fixture
@@ -76,18 +80,32 @@ def middle_plane(opening):
     return int(np.median(np.flatnonzero(opening.voxels.any((1, 2)))))
 
 
-def make_all(ct, skull, opening, arch):
+def make_all(ct, skull, opened, arch, made, true):
+    opening = opened.opening
     return {
         "ct_viewer": widgets.ct_viewer(ct),
         "threshold": widgets.threshold(ct),
         "features": widgets.features(skull, middle_plane(opening), opening=opening),
         "balloon": widgets.balloon(arch, INSIDE),
+        "patch": widgets.patch(skull, opened),
+        "surface": widgets.surface(made.patch),
+        "evaluation": widgets.evaluation(made, true),
     }
 
 
 @pytest.fixture(scope="session")
-def panels(ct, skull, opening, arch):
-    return lambda: make_all(ct, skull(), opening, arch)
+def design(skull, lesions):
+    return slicewise.design(skull(), lesions(), directions=1)
+
+
+@pytest.fixture(scope="session")
+def true(phantom, skull, lesions, design):
+    return run.check_truth(design, skull().with_voxels(phantom().implant), skull(), lesions()[0]).prosthesis
+
+
+@pytest.fixture(scope="session")
+def panels(ct, skull, lesions, arch, design, true):
+    return lambda: make_all(ct, skull(), lesions()[0], arch, design, true)
 
 
 def test_every_static_panel_is_one_picture_with_alt_text_and_one_line(static, panels):
@@ -112,6 +130,7 @@ def test_a_static_panel_makes_no_widget(static, panels):
 
 def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
     moves = {"ct_viewer": ("width", 400), "threshold": ("hu", 900), "features": ("reach", 25.0), "balloon": ("n", 41)}
+    moves |= {"patch": ("curves", False), "surface": ("steps", 0), "evaluation": ("side", "inner")}
     for name, panel in panels().items():
         assert close(pixels_of(panel), panel.view.rgb), name
         before = panel.front.image.value
@@ -205,7 +224,7 @@ def test_a_spiral_between_equal_angles_is_an_arc_from_the_start():
 def test_the_player_follows_the_number_of_steps(live, arch):
     panel = widgets.balloon(arch, INSIDE)
     step = panel.front.controls["step"]
-    assert step.value == step.max == 235 or step.value == step.max
+    assert step.value == step.max
     few = step.max
     panel.front.controls["dt"].value = 10.0
     assert step.value == step.max < few
@@ -223,6 +242,54 @@ def test_the_end_pressure_leaves_k_without_effect(live, arch):
     before = panel.view.rgb
     panel.set(pressure=0.2)
     assert (panel.view.rgb == before).all()
+
+
+def test_the_patch_of_a_slice_is_what_fill_and_hull_say(static, skull, lesions):
+    stack = widgets.stack.fill_slices(skull(), lesions()[0], widgets.stack.PRESSURES[1])
+    made = slicewise.design(skull(), lesions(), **slicewise.paper_options(skull())).patch.voxels
+    own = stack.patches & ~made[stack.first : stack.first + len(stack.slices)]
+    assert own.sum() <= 0.02 * stack.patches.sum()  # all but loose crumbs
+    panel = widgets.patch(skull(), lesions()[0]).set(pressure=widgets.stack.PRESSURES[1])
+    at = panel.values["plane"] - stack.first
+    assert f"patch of {stack.areas[at]:.0f} mm" in panel.view.line and stack.areas[at] > 0
+
+
+def test_unsmoothed_vertices_have_not_moved_and_smoothed_stay_in_their_voxel(static, design):
+    panel = widgets.surface(design.patch)
+    assert "0.00 mm on average, 0.00 mm at most" in panel.set(steps=0).view.line
+    most = float(panel.set(steps=30).view.line.split(" mm at most")[0].split()[-1])
+    assert 0 < most <= np.linalg.norm(design.patch.spacing) / 2 + 0.005
+
+
+def test_the_evaluation_line_counts_nodes(static, design, true):
+    panel = widgets.evaluation(design, true).set(side="inner", limit=0.4)
+    distances = evaluate.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
+    assert f"{100 * (distances <= 0.4).mean():.0f} % of the nodes lie within 0.4 mm" in panel.view.line
+    assert f"max {distances.max():.2f} mm" in panel.view.line
+
+
+def test_the_map_of_distances_shows_the_distances_of_the_nodes(design, true):
+    seen = widgets.solid.distance_map(design, true, INNER)
+    shown = seen.seen[np.isfinite(seen.seen)]
+    assert 0 <= shown.min() and shown.max() <= seen.distances.max() + 1e-6
+    assert np.median(shown) == pytest.approx(np.median(seen.distances), rel=0.3)
+
+
+def test_the_tuner_hands_its_parameters_to_the_design_command(static, phantom, tmp_path):
+    panel = widgets.tuner(phantom()).set(slices=tuning.SLICES[0], reach=20.0, own=True, pressure=0.5)
+    check_options("slicewise", panel.parameters)
+    assert json.loads(panel.save(tmp_path / "p.json").read_text()) == panel.parameters
+    assert panel.parameters["axial"] and panel.parameters["pressure"] == 0.5
+    case = phantom()
+    bone = Volume(case.bone, case.affine)
+    made = slicewise.design(bone, **panel.parameters)
+    dice = evaluate.dice(made.patch, bone.with_voxels(case.implant))
+    assert panel.view.line.startswith(f"DSC {dice:.3f}")
+
+
+def test_the_tuner_starts_at_the_defaults(static, phantom):
+    wanted = default_options("slicewise")
+    assert all(wanted[name] == value for name, value in widgets.tuner(phantom()).parameters.items())
 
 
 def test_a_panel_refuses_a_control_it_does_not_have(static, arch):

@@ -10,5 +10,22 @@ from .gap import features
 from .inflation import balloon
 from .mode import mode
 from .panel import Panel, View, static_twin
+from .solid import evaluation, surface
+from .stack import patch
+from .tuning import Tuner, tuner
 
-__all__ = ["Panel", "View", "balloon", "ct_viewer", "features", "mode", "static_twin", "threshold"]
+__all__ = [
+    "Panel",
+    "Tuner",
+    "View",
+    "balloon",
+    "ct_viewer",
+    "evaluation",
+    "features",
+    "mode",
+    "patch",
+    "static_twin",
+    "surface",
+    "threshold",
+    "tuner",
+]

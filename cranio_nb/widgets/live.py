@@ -34,6 +34,8 @@ class Front:
         self._paused = False
         self._show()
         for widget in self.controls.values():
+            if panel.slow and hasattr(widget, "continuous_update"):
+                widget.continuous_update = False
             widget.observe(self._moved, "value")
         rows = [self._row(control) for control in panel.controls.values()]
         self.box = ipw.VBox([*rows, *self._buttons(), self.image, self.caption])
@@ -51,6 +53,8 @@ class Front:
             self._later()
 
     def _draw(self) -> None:
+        if self.panel.slow:
+            self.caption.value = '<p role="status" style="margin:0">Working …</p>'
         view = self.panel.update(self._values())
         at_end = [name for name in view.limits or {} if self.controls[name].value == self.controls[name].max]
         self._show()

@@ -90,6 +90,8 @@ class Panel:
         What the picture shows, for those who cannot see it.
     actions : dict of str to callable, optional
         Buttons: label -> what to do with the panel, returning a line to show.
+    slow : bool
+        Whether a picture takes long: controls then speak when they are let go.
     """
 
     def __init__(
@@ -98,12 +100,14 @@ class Panel:
         picture: Callable[..., View],
         *,
         alt: str,
-        actions: dict[str, Callable[[Panel], str]] | None = None,
+        actions: dict[str, Callable[[Any], str]] | None = None,
+        slow: bool = False,
     ) -> None:
         self.controls = {control.name: control for control in controls}
         self.values: dict[str, Any] = {control.name: control.value for control in controls}
         self.alt = alt
         self.actions = dict(actions or {})
+        self.slow = slow
         self._picture = picture
         self.view = picture(**self.values)
 
