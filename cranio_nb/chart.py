@@ -118,6 +118,9 @@ def voxelise(
     filled = np.isfinite(outer) & np.isfinite(inner)
     region = ndimage.binary_dilation(filled & chart.hole, iterations=max(1, round(1.0 / chart.mm)))
     spread = [_extended(np.where(filled, radius, np.nan)) for radius in (outer, inner)]
+    beside = ~chart.hole  # what reaches over the rim ends with the bone's own surface: no flap lies on the bone
+    spread[0][beside] = np.fmin(spread[0], chart.outer)[beside]
+    spread[1][beside] = np.fmax(spread[1], chart.inner)[beside]
     directions = chart.directions[region]
     ends = np.concatenate([chart.eye + directions * radius[region][:, None] for radius in spread])
     index = bone.to_voxel(ends)
@@ -127,6 +130,27 @@ def voxelise(
     patch = np.zeros(bone.shape, bool)
     patch[box] = _between(chart, spread, region, bone.crop(box)) & ~bone.voxels[box]
     return patch
+
+
+def thickened(chart: RadialChart, outer: NDArray[np.float64], inner: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
+    """Radius maps moved apart about their middle where they lie closer than sound bone near the hole ever does.
+
+    Parameters
+    ----------
+    chart : RadialChart
+    outer, inner : ndarray, shape (M, M)
+        Radii of the prosthesis in mm; nan outside it.
+
+    Returns
+    -------
+    outer, inner : ndarray, shape (M, M)
+        At least as far apart as the thinnest tenth of the bone within 20 mm of the hole.
+    """
+    away = ndimage.distance_transform_edt(~chart.hole) * chart.mm
+    near = (away > 0) & (away <= 20)
+    least = float(np.nanquantile((chart.outer - chart.inner)[near], 0.1))
+    short = np.maximum(least - (outer - inner), 0.0) / 2
+    return outer + short, inner - short
 
 
 def _between(chart: RadialChart, spread: list[NDArray], region: NDArray, box: Volume) -> NDArray[np.bool_]:

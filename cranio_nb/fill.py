@@ -100,21 +100,3 @@ def main_piece(patch: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[
     votes[0] = 0
     best = int(np.argmax(votes)) if votes.any() else int(np.bincount(labels.ravel())[1:].argmax()) + 1
     return labels == best
-
-
-def without_flaps(patch: NDArray[np.bool_], spacing: NDArray[np.float64], *, width: float = 0.75) -> NDArray[np.bool_]:
-    """The patch without thin flaps that lie on the bone beside the hole.
-
-    Parameters
-    ----------
-    patch : ndarray of bool, shape (P, R, C)
-    spacing : ndarray, shape (3,)
-        mm along (plane, row, col); an axis coarser than `width` is left alone.
-    width : float
-        Flaps up to twice this thickness go, as far as they stand out by more than `width`, mm.
-    """
-    reach = np.floor(width / spacing).astype(int)
-    offsets = np.stack(np.meshgrid(*[np.arange(-n, n + 1) for n in reach], indexing="ij"), axis=-1)
-    ball = np.linalg.norm(offsets * spacing, axis=-1) <= width
-    core = ndimage.binary_opening(patch, ball)
-    return patch & ndimage.binary_dilation(core, ball)

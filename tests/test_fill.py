@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from cranio_nb import fill
 from cranio_nb.fill import between, main_piece, partial_loss, patch
 
 INNER, OUTER = 60.0, 75.0
@@ -134,19 +133,3 @@ def test_inputs_are_not_modified(ring):
     main_piece(np.stack([bone]), np.stack([bone]))
     for a, b in zip((bone, outer, inner), before, strict=True):
         np.testing.assert_array_equal(a, b)
-
-
-def test_flaps_on_the_bone_go_and_the_plate_stays():
-    plate = np.zeros((12, 40, 40), bool)
-    plate[3:9, 10:30, 10:30] = True
-    flapped = plate.copy()
-    flapped[8, 30:38, 15:25] = True  # a sheet one voxel thick beside the plate
-    out = fill.without_flaps(flapped, np.full(3, 0.5))
-    assert np.array_equal(out & plate, plate)
-    assert not out[:, 32:].any()
-
-
-def test_thick_planes_are_left_alone_by_the_flap_rule():
-    wedge = np.zeros((6, 30, 30), bool)
-    wedge[2, 5:25, 5:25] = True  # a single plane of 2.5 mm is no flap
-    assert np.array_equal(fill.without_flaps(wedge, np.array([2.5, 0.5, 0.5])), wedge)

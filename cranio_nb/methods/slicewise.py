@@ -225,7 +225,7 @@ def _fanned(
     outer[vault.hole], inner[vault.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return made, np.zeros(bone.shape, bool)
-    return made, fill.without_flaps(chart.voxelise(vault, outer, inner, bone), bone.spacing)
+    return made, chart.voxelise(vault, *chart.thickened(vault, outer, inner), bone)
 
 
 def _weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
