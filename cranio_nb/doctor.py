@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
 from . import __version__
+from .front_end import proxy
 
 _NEEDED: tuple[str, ...] = (
     *("numpy", "scipy", "scikit-image", "pydicom", "pyjpegls", "pylibjpeg-openjpeg", "pylibjpeg-libjpeg"),
@@ -29,7 +30,10 @@ _NEEDED: tuple[str, ...] = (
         "jinja2",
     ),
 )
-_OPTIONAL = {"lab": ("jupyterlab", "ipywidgets", "jupytext", "nbclient"), "view": ("pyvista",)}
+_OPTIONAL = {
+    "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
+    "view": ("pyvista", "vtk", "trame-pyvista"),
+}
 _MIN_MEMORY = 2.0  # GB
 _PLOT = "from matplotlib.backends.backend_agg import FigureCanvasAgg as C; from matplotlib.figure import Figure as F; "
 _PLOT += "C(F()).draw()"
@@ -67,6 +71,7 @@ def examine() -> Iterator[Check]:
     for extra, names in _OPTIONAL.items():
         for name in names:
             yield _package(name, "optional", f'pip install "cranio-nb[{extra}]"')
+    yield _front_end()
     yield _memory()
     yield _drawing("pictures", _PLOT, "missing", "Install matplotlib again.")
     if _installed("pyvista"):
@@ -100,6 +105,18 @@ def _installed(name: str) -> str:
         return version(name)
     except PackageNotFoundError:
         return ""
+
+
+def _front_end() -> Check:
+    """Where lessons would be shown; slider callbacks and VTK agree only under the package's lab settings."""
+    between = proxy()
+    if between:
+        return Check("front end", "ok", f"{between}: 3-D scenes are pages of their own")
+    if not _installed("jupyterlab"):
+        return Check("front end", "optional", "no JupyterLab", 'pip install "cranio-nb[lab]"')
+    return Check(
+        "front end", "ok", "JupyterLab on this machine; start it with `cranio-nb lab`, which brings its settings"
+    )
 
 
 def _memory() -> Check:

@@ -22,10 +22,10 @@ from numpy.typing import ArrayLike, NDArray
 
 from .canvas import BLUE, GREEN, GREY, ORANGE, PURPLE, RGB, SKY, Canvas, rgb_of, round_length
 from .errors import InputRefused
+from .front_end import is_local, mode
 from .mesh import Mesh
 from .plot import colour_scale
 from .render import Solid, render, view_axes
-from .widgets.mode import is_local, mode
 from .widgets.panel import Bundle, bundle, png
 
 MAX_FACES = 150_000

@@ -5,10 +5,10 @@ with alternative text and one line of text that is the same on every run. Length
 degrees, attenuation in HU; the balloon's own frame is px, as in the paper.
 """
 
+from ..front_end import mode
 from .bone import ct_viewer, threshold
 from .gap import features
 from .inflation import balloon
-from .mode import mode
 from .panel import Panel, View, static_twin
 from .solid import evaluation, surface
 from .stack import patch

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from ..errors import CranioError, InputRefused
-from .mode import mode
+from ..front_end import mode
 
 Bundle = tuple[dict[str, Any], dict[str, Any]]
 

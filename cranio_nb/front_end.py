@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 
-from ..errors import InputRefused
+from .errors import InputRefused
 
 MODES = ("static", "widget", "auto")
 
@@ -33,8 +33,21 @@ def mode() -> str:
 
 def is_local() -> bool:
     """Whether the browser runs on the kernel's own machine, so that it can reach a port of the kernel."""
-    remote = ("JUPYTERHUB_USER", "BINDER_SERVICE_HOST", "VSCODE_PID", "CODESPACES", "KUBERNETES_SERVICE_HOST")
-    return "google.colab" not in sys.modules and not any(name in os.environ for name in remote)
+    return proxy() is None
+
+
+def proxy() -> str | None:
+    """What stands between kernel and browser, or None."""
+    if "google.colab" in sys.modules or "COLAB_RELEASE_TAG" in os.environ:
+        return "Colab"
+    marks = {
+        "JUPYTERHUB_USER": "JupyterHub",
+        "BINDER_SERVICE_HOST": "Binder",
+        "VSCODE_PID": "VS Code",
+        "CODESPACES": "Codespaces",
+        "KUBERNETES_SERVICE_HOST": "a cluster",
+    }
+    return next((name for mark, name in marks.items() if mark in os.environ), None)
 
 
 def _has_front_end() -> bool:
