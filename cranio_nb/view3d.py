@@ -220,7 +220,7 @@ def _camera(scene: Scene) -> list[tuple[float, ...]]:
     low, high = _bounds([part.mesh for part in scene.parts])
     middle = (low + high) / 2
     up = (0.0, 0.0, 1.0) if abs(scene.towards[2]) < 0.95 else (0.0, -1.0, 0.0)
-    place = middle + 2.2 * np.linalg.norm(high - low) * scene.towards
+    place = middle + 1.6 * np.linalg.norm(high - low) * scene.towards
     return [tuple(place.tolist()), tuple(middle.tolist()), up]
 
 

@@ -15,9 +15,12 @@ import ipywidgets as ipw  # noqa: TID251  (this is the module that may)
 
 from .panel import Choice, Control, Panel, Slider, Switch, jpeg
 
+_UNSEEN = (
+    '<p style="position:absolute;left:-9999px">%s</p>'  # read aloud only: the image widget takes no alternative text
+)
 _PAUSE = 0.02  # s between two pictures, in which waiting messages are read
-_LABEL = {"description_width": "190px"}
-_WIDE = ipw.Layout(width="440px")
+_LABEL = {"description_width": "290px"}
+_WIDE = ipw.Layout(width="580px")
 
 
 class Front:
@@ -27,7 +30,7 @@ class Front:
         self.panel = panel
         self.controls = {name: _widget(control) for name, control in panel.controls.items()}
         height, width = panel.view.rgb.shape[:2]
-        self.image = ipw.Image(format="jpeg", width=width, height=height, tooltip=panel.alt)
+        self.image = ipw.Image(format="jpeg", width=width, height=height)
         self.image.layout = ipw.Layout(max_width="100%", object_fit="contain")
         self.caption = ipw.HTML()
         self._later = Latest(self._draw)
@@ -54,7 +57,7 @@ class Front:
 
     def _draw(self) -> None:
         if self.panel.slow:
-            self.caption.value = '<p role="status" style="margin:0">Working …</p>'
+            self.caption.value = '<p role="status">Working …</p>'
         view = self.panel.update(self._values())
         at_end = [name for name in view.limits or {} if self.controls[name].value == self.controls[name].max]
         self._show()
@@ -77,7 +80,7 @@ class Front:
     def _show(self) -> None:
         view = self.panel.view
         self.image.value = jpeg(view.rgb)
-        self.caption.value = f'<p role="status" style="margin:0">{_escaped(view.line)}</p>'
+        self.caption.value = f'{_UNSEEN % _escaped(self.panel.alt)}<p role="status">{_escaped(view.line)}</p>'
         self._paused = True
         for name, high in (view.limits or {}).items():
             self.controls[name].max = high
@@ -89,7 +92,7 @@ class Front:
         widget = self.controls[control.name]
         if not (isinstance(control, Slider) and control.player):
             return widget
-        play = ipw.Play(min=control.low, max=control.high, step=1, interval=80, tooltip=f"play {control.label}")
+        play = ipw.Play(value=widget.value, min=widget.min, max=widget.max, interval=80)
         ipw.jslink((play, "value"), (widget, "value"))
         ipw.jslink((widget, "max"), (play, "max"))
         back, on = (ipw.Button(icon=i, tooltip=t, layout=ipw.Layout(width="40px")) for i, t in _STEPS)

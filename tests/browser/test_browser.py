@@ -1,0 +1,136 @@
+"""What a student sees: JupyterLab with the lessons, sliders that move pictures, a balloon that plays, a live scene."""
+
+import io
+import json
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+
+CELLS = (
+    """
+from cranio_nb import features, lesion, render, view3d, widgets
+from cranio_nb.prosthesis import OUTER
+from cranio_nb.volume import Volume
+from data_synth import phantom_case
+case = phantom_case("tiny")
+ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
+one = lesion.find(bone)[0]
+plane = sum(one.planes) // 2
+""",
+    "widgets.features(bone, plane, opening=one.opening)",
+    """
+ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.opening.voxels[plane], skip=3, reach=8)
+widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels[plane])
+""",
+    'view3d.show(render.skull_surface(bone), colours=["#EDE7D8"], alt="A skull with a hole.", towards=one.direction)',
+)
+
+
+def write_notebook(path, cells):
+    blocks = [
+        {
+            "cell_type": "code",
+            "id": f"c{i}",
+            "metadata": {},
+            "outputs": [],
+            "execution_count": None,
+            "source": c.strip(),
+        }
+        for i, c in enumerate(cells)
+    ]
+    kernel = {"kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}}
+    path.write_text(json.dumps({"cells": blocks, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}))
+
+
+def shot(locator):
+    return np.asarray(Image.open(io.BytesIO(locator.screenshot())).convert("RGB")).astype(int)
+
+
+def until(condition, timeout=20.0):
+    """Wait for a condition; how long it took, or None."""
+    start = time.monotonic()
+    while time.monotonic() - start < timeout:
+        if condition():
+            return time.monotonic() - start
+        time.sleep(0.02)
+    return None
+
+
+def panel(page, slider):
+    """The panel that holds a slider of this name."""
+    return page.locator(".jp-OutputArea-child", has=page.locator(".widget-label", has_text=slider)).first
+
+
+def press(box, slider, key):
+    row = box.locator(".widget-inline-hbox", has=box.page.locator(".widget-label", has_text=slider)).first
+    row.locator(".noUi-handle").focus()
+    box.page.keyboard.press(key)
+
+
+def no_errors(page):
+    return page.locator(".jp-RenderedText[data-mime-type='application/vnd.jupyter.error']").all_inner_texts()
+
+
+@pytest.fixture(scope="module")
+def small(lab_server):
+    write_notebook(lab_server[1] / "small.ipynb", CELLS)
+    return "small.ipynb"
+
+
+def test_sliders_move_pictures_the_balloon_plays_and_the_scene_is_there(open_notebook, small):
+    page = open_notebook(small)
+    assert no_errors(page) == []
+
+    for slider, key in (("reach", "ArrowRight"), ("pressure (px", "ArrowRight")):
+        box = panel(page, slider)
+        image, status = box.locator("img").first, box.locator("[role=status]").first
+        source, words, before = image.get_attribute("src"), status.inner_text(), shot(image)
+        press(box, slider, key)
+        assert until(lambda i=image, s=source: i.get_attribute("src") != s), slider
+        assert until(lambda t=status, w=words: t.inner_text() != w), slider
+        assert np.abs(shot(image) - before).max() > 60, slider
+
+    box = panel(page, "pressure (px")
+    status = box.locator("[role=status]").first
+    press(box, "step", "Home")
+    assert until(lambda: status.inner_text().startswith("Step 0 of ")), status.inner_text()
+    still = shot(box.locator("img").first)
+    box.locator(".jupyter-widgets.widget-play button").first.click()
+    assert until(lambda: int(status.inner_text().split()[1]) >= 12), status.inner_text()
+    assert np.abs(shot(box.locator("img").first) - still).max() > 60
+
+    frame = page.locator("iframe.pyvista, iframe[srcdoc]").first
+    frame.scroll_into_view_if_needed()
+    assert until(lambda: bone_share(frame) > 0.1, 40), "the scene shows no skull"
+    before = shot(frame)
+    place = frame.bounding_box()
+    x, y = place["x"] + place["width"] / 2, place["y"] + place["height"] / 2
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 120, y + 20, steps=6)
+    page.mouse.up()
+    assert until(lambda: (np.abs(shot(frame) - before).max(axis=2) > 20).mean() > 0.02), "the scene does not turn"
+    assert no_errors(page) == []
+
+
+def bone_share(frame):
+    """Share of the pixels that have the colour of bone: warm, neither white nor grey."""
+    red, _, blue = np.moveaxis(shot(frame), 2, 0)
+    return float(((red - blue > 6) & (red > 60)).mean())
+
+
+@pytest.mark.parametrize("lesson", ["00_tour", "03_features", "04_balloon"])
+def test_a_lesson_runs_from_top_to_bottom(open_notebook, lab_server, lesson):
+    if not (lab_server[1] / f"{lesson}.ipynb").is_file():
+        pytest.skip(f"{lesson} is not built")
+    page = open_notebook(f"{lesson}.ipynb")
+    declared = page.locator(".jp-RenderedText[data-mime-type='application/vnd.jupyter.error']").count()
+    wanted = sum("raises-exception" in cell["metadata"].get("tags", []) for cell in cells_of(lab_server[1], lesson))
+    assert declared <= wanted, no_errors(page)
+    assert page.locator(".jp-OutputArea-output img").count() > 0
+
+
+def cells_of(folder, lesson):
+    return json.loads((folder / f"{lesson}.ipynb").read_text())["cells"]
