@@ -128,7 +128,7 @@ def execute(notebook: NotebookNode) -> NotebookNode:
         try:
             client.execute(env={**os.environ, **_QUIET})
         except CellExecutionError as error:
-            raise InputRefused("BadLesson", f"A cell of the lesson fails: {error.ename}: {error.evalue}") from None
+            raise InputRefused("BadLesson", f"A cell fails that should not: {error.ename}: {error.evalue}") from None
     for cell in notebook.cells:
         failed = [output for output in cell.get("outputs", ()) if output.output_type == "error"]
         if ("raises-exception" in tags(cell)) != bool(failed):

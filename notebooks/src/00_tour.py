@@ -1,0 +1,212 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 00 Tour: from a head CT to a prosthesis
+#
+# A patient has a hole in the skull. We have a CT scan of the head. We want the piece of bone that is missing, as a
+# solid body that a machine can make. This lesson walks through all of it, once and quickly. Each later lesson opens
+# one of the boxes.
+#
+# > **Not for clinical use.** This is a tool for teaching and research, not a medical device. The head below is
+# > synthetic; nobody's data is used.
+#
+# **After this lesson you can**
+# - name the five stages of the method and say what goes into each and what comes out;
+# - run the whole pipeline on a scan and read its result;
+# - turn voxels into cubic centimetres, and say how well two masks agree.
+#
+# **Time:** 30 minutes (tour 15, questions 5, exercises 10). **You need:** Python with numpy arrays; nothing else.
+#
+# **The paper:** *Surface reconstruction for generating digital models of prosthesis* (VISAPP 2011, doi
+# 10.5220/0003356601370142). Its five stages, and the lessons that open them:
+#
+# | stage | in | out | lesson |
+# |---|---|---|---|
+# | 1 segmentation | CT in HU | bone mask | 01, 02 |
+# | 2 features | bone of one slice | ends of the gap and their tangents | 03 |
+# | 3 deformable model | ends and tangents | outer and inner curve across the gap | 04 |
+# | 4 volume | curves | patch of voxels | 05 |
+# | 5 surface | patch | closed triangle mesh | 06 |
+# | and afterwards | mesh and truth | how good is it? | 07, 10 |
+
+# %%
+import numpy as np
+
+from cranio_nb import (
+    check,
+    classroom,
+    evaluate,
+    features,
+    lesion,
+    plot,
+    render,
+    segment,
+    widgets,
+)
+from cranio_nb.mesh_check import check_mesh
+from cranio_nb.methods import slicewise
+
+# %% [markdown]
+# ## 1. The scan
+#
+# `classroom.load` makes a synthetic head with a hole, so you need no data and no network. A CT is a box of numbers in
+# **Hounsfield units** (HU): air is -1000, water 0, bone 300 and more.
+#
+# *The switch:* `"class"` takes seconds; `"full"` is the size of the paper's scan (512 x 512 x 68);
+# `classroom.load(scan="path/to/your/scan")` takes your own (DICOM folder, NIfTI or NRRD).
+
+# %% tags=["nbval-check-output"]
+case = classroom.load("class")
+ct = case.ct
+print(f"{ct.shape} voxels (planes, rows, columns), {np.round(ct.spacing, 2)} mm apart")
+print(f"from {ct.voxels.min()} to {ct.voxels.max()} HU")
+
+# %% tags=["nbval-check-output"]
+widgets.ct_viewer(ct)
+
+# %% [markdown]
+# *In a live notebook this picture has sliders; where no kernel runs it is a still.* The bright ring is the skull. Move
+# through the slices: somewhere the ring is open.
+#
+# ## 2. Bone (stage 1)
+#
+# Everything from 400 HU up is bone. Then the couch and loose specks are dropped and small holes are closed.
+
+# %% tags=["nbval-check-output"]
+bone = segment.segment(ct, threshold=400)
+print(f"{bone.voxels.mean():.1%} of the voxels are bone")
+
+# %% [markdown]
+# ## 3. Where is the hole?
+#
+# We stand inside the head and look out. Where a ray meets no bone, there is an opening.
+
+# %% tags=["nbval-check-output"]
+openings = lesion.find(bone)
+first, end = openings[0].planes
+print(f"{len(openings)} opening, in planes {first} to {end - 1}")
+
+# %% [markdown]
+# ## 4. One slice: ends, tangents, balloon (stages 2 and 3)
+#
+# In one slice the hole is a gap in a ring. At each end of the gap we take the direction in which the bone was going,
+# and let a curve bulge from one end to the other, like a rubber band with wind behind it: a **balloon**. One balloon
+# runs along the outside of the bone, one along the inside. Here is the outer one.
+
+# %% tags=["nbval-check-output"]
+plane = (first + end) // 2
+seen = features.slice_features(bone.voxels[plane])
+outer, inner = features.gap_ends(seen, openings[0].opening.voxels[plane], skip=3, reach=10)
+inside = bone.to_voxel(openings[0].head_centre)[1:]
+player = widgets.balloon(outer, inside, background=bone.voxels[plane], px=case.px)
+player.set(preset="tangent pressure: k from the ends")
+
+# %% [markdown]
+# **Predict, then move, then explain.** What happens to the curve if you choose the preset *paper* (a fixed pressure),
+# and then make the pressure `k` negative? Say it first, then try.
+#
+# <details>
+# <summary>Answer</summary>
+#
+# The paper's pressure is the same for every gap, so here the curve comes out too flat or too round. With a negative
+# `k` the wind blows the other way and the curve sinks into the head. Lesson 04 tells which `k` fits and why.
+#
+# </details>
+#
+# ## 5. All slices (stage 4), and the surface (stage 5)
+#
+# `design` does this for the whole hole, fills between the curves, and wraps the filled voxels in triangles.
+
+# %% tags=["nbval-check-output"]
+prosthesis = slicewise.design(bone, openings)
+report = check_mesh(prosthesis.mesh)
+print(
+    f"{report.n_faces} triangles, {report.volume / 1000:.1f} cm3, can be built: {report.sound}"
+)
+
+# %% [markdown]
+# ## 6. How good is it?
+#
+# For a synthetic head we know the bone that is missing. **Dice** says how well two masks overlap (1 is perfect). The
+# **95th percentile of the surface distance** says how far apart the surfaces are, in mm, leaving out the worst 5 %.
+
+# %% tags=["nbval-check-output"]
+if case.truth is not None:
+    score = evaluate.score(prosthesis.patch, case.truth, bone)
+    print(f"Dice {score.dice:.3f}, 95 % of the surface within {score.hd95:.2f} mm")
+
+# %% tags=["nbval-check-output"]
+skull = render.skull_surface(bone)
+figure = plot.view_figure(skull, prosthesis.mesh, openings[0].direction, px=0.4)
+alt = "A pale skull seen from its side; the hole is closed by the prosthesis, in blue."
+classroom.picture(figure, alt, f"{report.n_parts} prosthesis in {len(openings)} opening")
+
+# %% [markdown]
+# That is the whole way: a scan went in, a solid came out. The rest of the course asks at each step: *why does this
+# work, when does it fail, and how do we know?*
+#
+# ## A mistake to make once
+#
+# Students often ask for too much. What if bone began at 4000 HU? The package says what it found and what to do,
+# rather than going on with nothing.
+
+# %% tags=["raises-exception"]
+segment.segment(ct, threshold=4000)
+
+# %% [markdown]
+# ## Exercises
+#
+# Each check prints one line: your points, and what is wrong, as exactly as it can. It never stops your notebook. Stuck?
+# Ask for a hint: `check.exercise("0.1", volume_cm3, hint=1)`, then 2, then 3.
+#
+# **Exercise 0.1.** How much material does a prosthesis need? Write a function that takes a mask and the spacing of its
+# voxels in mm, and returns the volume in cm3.
+
+
+# %% tags=["solution"]
+def volume_cm3(mask, spacing):
+    """Volume of a mask in cm3; spacing is mm between voxels along (plane, row, col)."""
+    return mask.sum() * np.prod(spacing) / 1000
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("0.1", volume_cm3)
+
+# %% [markdown]
+# **Exercise 0.2.** Write Dice's coefficient: twice the number of voxels that two masks share, over the sum of their
+# sizes. Why twice? Because two equal masks should give 1.
+
+
+# %% tags=["solution"]
+def dice(a, b):
+    """Dice's coefficient of two bool masks, 0 to 1."""
+    return 2 * (a & b).sum() / (a.sum() + b.sum())
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("0.2", dice)
+
+# %% [markdown]
+# ## Summary
+#
+# - A scan is a box of HU; a bone mask says which voxels are bone.
+# - In each slice two curves continue the bone across the gap; between them lies the prosthesis.
+# - A result without a measure is a picture. We measure overlap and distance in mm.
+#
+# | paper | code | unit |
+# |---|---|---|
+# | CT number | `ct.voxels` | HU |
+# | bone | `segment.segment` | mask |
+# | end points, tangents | `features.gap_ends` -> `GapEnds` | px |
+# | balloon | `balloon.inflate` | px |
+# | prosthesis volume | `Prosthesis.patch` | mask |
+# | digital model | `Prosthesis.mesh` | mm |
+#
+# **Further reading.** Sanan and Haines, *Repairing holes in the head: a history of cranioplasty*, Neurosurgery 40
+# (1997). The AutoImplant challenges (MICCAI 2020 and 2021) compare many automatic methods.

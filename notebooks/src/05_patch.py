@@ -1,0 +1,244 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 05 Patch: from curves to voxels
+#
+# Two curves cross the gap. Between them lies the missing bone. This lesson fills it, slice by slice, meets slices
+# where no curve is needed, and finds out why it can matter in which direction one slices.
+#
+# **After this lesson you can**
+# - fill the region between two curves and take the bone away from it;
+# - repair partial loss by the convex hull (the paper's Figure 6);
+# - say which slices were done how, and read a per-slice record.
+#
+# **Time:** 45 minutes (text 20, questions 10, exercises 15). **You need:** lesson 04.
+#
+# **From the paper:** the end of section 2, Figures 5 and 6.
+
+# %%
+import numpy as np
+from scipy import ndimage
+from skimage.morphology import convex_hull_image
+
+from cranio_nb import check, classroom, evaluate, fill, lesion, segment, tables
+from cranio_nb.methods import slicewise
+
+# %% [markdown]
+# ## Parameters
+#
+# | name | meaning | unit | paper |
+# |---|---|---|---|
+# | `min_area` | islands smaller than this are dropped | px | not given |
+# | `axial` | cut along the planes of the scan | | yes |
+# | `directions` | else: in how many directions the hole is cut | 1 | |
+#
+# *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
+
+# %%
+case = classroom.load("class")
+bone, px = segment.segment(case.ct), case.px
+openings = lesion.find(bone)
+opening = openings[0]
+
+# %% [markdown]
+# ## 1. Between the curves
+#
+# We run the paper's own preset and look at one slice. The outline goes along the outer curve and *back* along the
+# inner one. Inside it, minus the bone, is the patch.
+
+# %% tags=["nbval-check-output"]
+paper = slicewise.design(bone, openings, **slicewise.paper_options(bone))
+made = paper.working[0].slices
+bridged = [s for s in made if s.status == "balloon"]
+one = bridged[len(bridged) // 2]
+plane = one.plane + max(opening.planes[0] - 2, 0)
+outer, inner = one.curves
+region = fill.between(outer, inner, bone.shape[1:])
+patch = fill.patch(outer, inner, bone.voxels[plane])
+print(f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without the bone")
+
+# %% tags=["nbval-check-output"]
+fig, (left, right) = classroom.axes(2, height=4.6)
+classroom.show_mask(left, region, px=px, colour="#56B4E9", title="between the curves")
+classroom.show_mask(right, bone.voxels[plane], px=px)
+classroom.show_mask(right, patch, px=px, colour="#56B4E9", title="minus bone: the patch")
+for ax in (left, right):
+    classroom.show_curve(ax, outer, px=px, line=0, label="outer")
+    classroom.show_curve(ax, inner, px=px, line=1, label="inner")
+    classroom.zoom(ax, [outer, inner], px=px)
+right.legend(fontsize=8)
+alt = "Two curves cross a gap in the bone; the region between them, with and without bone."
+classroom.picture(fig, alt, f"patch of {patch.sum() * px**2:.0f} mm2")
+
+# %% [markdown]
+# **Question.** Why must the bone be taken away at all? The curves start at the gap's ends!
+#
+# <details>
+# <summary>Answer</summary>
+#
+# With `skip` > 0 they start *behind* the ends, on sound bone. And a bevelled rim is not upright: in one and the same
+# slice the gap is wider outside than inside.
+#
+# </details>
+#
+# ## 2. Partial loss
+#
+# Near the upper and lower end of a hole the cutter takes only part of the thickness. The ring of bone stays closed, its
+# skeleton is a closed curve, and there are no ends. The paper then takes the **convex hull minus the bone** and drops the
+# biggest region (the inside of the head) and small islands. Here is a head with such a dent.
+
+# %% tags=["nbval-check-output"]
+dented = classroom.load("class", defect="partial")
+dent = segment.segment(dented.ct)
+lost = dented.truth.voxels if dented.truth is not None else dent.voxels
+at = int(lost.sum(axis=(1, 2)).argmax())
+hull = convex_hull_image(dent.voxels[at])
+found = fill.partial_loss(dent.voxels[at], min_area=20)
+print(f"{(hull & ~dent.voxels[at]).sum()} px in the hull but not bone; {found.sum()} px kept")
+
+# %% tags=["nbval-check-output"]
+fig, (left, right) = classroom.axes(2, height=4.4)
+classroom.show_mask(
+    left, hull & ~dent.voxels[at], px=px, colour="#E69F00", title="hull minus bone"
+)
+classroom.show_mask(right, dent.voxels[at], px=px)
+classroom.show_mask(right, found, px=px, colour="#56B4E9", title="kept: the patch")
+alt = "Left: all of the hull that is not bone, mostly the inside. Right: the dent alone."
+classroom.picture(fig, alt, f"dent of {found.sum() * px**2:.0f} mm2")
+
+# %% [markdown]
+# **Question.** When does the convex hull give the wrong answer?
+#
+# <details>
+# <summary>Answer</summary>
+#
+# When the bone itself was not convex there (temples, the back of the neck): hull minus bone then also fills a natural
+# hollow. And a hull is *flat* across the dent: it cannot bulge like the skull. It is for small losses only, as the paper
+# says.
+#
+# </details>
+#
+# ## 3. All slices
+#
+# The record says of each slice how it was done.
+
+# %% tags=["nbval-check-output"]
+counts = tables.count_statuses(paper.record["slices"])
+print("the paper's preset:", counts)
+if case.truth is not None:
+    score = evaluate.score(paper.patch, case.truth, bone)
+    print(f"Dice {score.dice:.3f}, HD95 {score.hd95:.1f} mm, in bone: {score.overlap} voxels")
+
+# %% [markdown]
+# The paper had 23 slices with a lesion, 3 of them by the hull and 20 by balloons.
+#
+# ## 4. In which direction to slice?
+#
+# Nothing says that slices must be axial. Seen from inside the head, planes can fan out in any direction, and each cuts
+# the hole as the paper's slices cut a lateral one. Our default cuts in six directions and takes a weighted mean.
+#
+# **Predict:** will one direction across the short side be enough?
+
+# %% tags=["nbval-check-output"]
+for n in (1, 2, 6):
+    designed = slicewise.design(bone, openings, directions=n)
+    if case.truth is not None:
+        score = evaluate.score(designed.patch, case.truth, bone)
+        print(f"{n} direction(s): Dice {score.dice:.3f}, HD95 {score.hd95:.2f} mm")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# Most of the gain comes from tangents and pressure that fit (lesson 04), so one direction is good already. More
+# directions average out the error of single tangents, which is what a slice by slice method suffers from.
+#
+# </details>
+#
+# ## A mistake to make once
+#
+# Join outer and inner curve without turning one round, and the outline is a bow tie that crosses itself.
+# (`fill.between` turns the inner curve round itself, so here we turn it once too often.)
+
+# %% tags=["raises-exception"]
+bow_tie = fill.between(outer, inner[::-1], bone.shape[1:])
+agree = (bow_tie & region).sum() / region.sum()
+assert agree == 1, f"only {agree:.0%} of the region is filled: the outline is a bow tie"
+
+# %% [markdown]
+# ## Exercises
+#
+# **Exercise 5.1.** The outline. Join two curves (n, 2) that run the same way into one outline that goes round once.
+
+
+# %% tags=["solution"]
+def outline(outer, inner):
+    """Closed outline of the region between two curves that run the same way, shape (m, 2)."""
+    return np.concatenate([outer, inner[::-1]])
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("5.1", outline)
+
+# %% [markdown]
+# **Exercise 5.2.** The patch of a slice, from the region between the curves and the bone (both masks).
+
+
+# %% tags=["solution"]
+def new_bone(region, bone):
+    """The part of the region that is not bone yet."""
+    return region & ~bone
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("5.2", new_bone)
+
+# %% [markdown]
+# **Exercise 5.3.** Partial loss, Figure 6 (c) and (d): hull minus bone, without the biggest region and without regions of
+# fewer than `min_pixels`. (`convex_hull_image` and `ndimage.label` are imported.)
+
+
+# %% tags=["solution"]
+def partial_loss(bone, min_pixels):
+    """Patch of a closed ring with a dent, as a mask."""
+    labels, n = ndimage.label(convex_hull_image(bone) & ~bone)
+    sizes = np.bincount(labels.ravel(), minlength=n + 1)
+    sizes[0] = 0
+    keep = sizes >= min_pixels
+    keep[sizes.argmax()] = False
+    return keep[labels]
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("5.3", partial_loss)
+
+# %% tags=["expected"]
+fig, (ax,) = classroom.axes(height=4.2, width=5.0)
+classroom.show_mask(ax, dent.voxels[at], px=px)
+classroom.show_mask(
+    ax, partial_loss(dent.voxels[at], 20), px=px, colour="#56B4E9", title="your patch"
+)
+alt = "A closed ring of bone with a dent in its outside; the dent is filled in blue."
+classroom.picture(fig, alt, f"{partial_loss(dent.voxels[at], 20).sum()} px")
+
+# %% [markdown]
+# ## Summary
+#
+# - Patch = between the curves, minus bone. Partial loss = hull minus bone, minus the biggest region and islands.
+# - Every slice has a record: balloon, hull, carried from its neighbours, or skipped. Read it.
+# - The direction of the slices is a choice.
+#
+# | paper | code | unit |
+# |---|---|---|
+# | region between the curves | `fill.between` | px |
+# | prosthesis patch, Fig. 5 (b) | `fill.patch` | px |
+# | partial loss, Fig. 6 | `fill.partial_loss` | px |
+# | prosthesis volume | `Prosthesis.patch` | voxels |
+#
+# **Further reading.** de Berg and others, *Computational Geometry*, the chapters on polygons and convex hulls.

@@ -1,0 +1,183 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 06 Surface: from voxels to something that can be made
+#
+# A machine wants triangles, not voxels. Marching cubes makes them, but it makes stairs as well: the paper complains of
+# its own "staircase defect". This lesson makes the surface, smooths it as far as the data allow, and asks whether the
+# result can be built at all.
+#
+# **After this lesson you can**
+# - explain what marching cubes does and where the stairs come from;
+# - smooth a surface and say how far it moved, in mm;
+# - check a mesh before it leaves the house, and compute its volume and mass.
+#
+# **Time:** 40 minutes (text 20, questions 5, exercises 15). **You need:** lesson 05; the cross product.
+#
+# **From the paper:** stage 5, Figure 8, and the staircase of section 4.
+
+# %%
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from cranio_nb import check, classroom, export, implant, lesion, plot, segment, surface
+from cranio_nb.mesh import Mesh
+from cranio_nb.mesh_check import check_mesh
+from cranio_nb.methods import slicewise
+
+# %% [markdown]
+# ## Parameters
+#
+# | name | meaning | unit | paper |
+# |---|---|---|---|
+# | `smooth` | place vertices between the voxels | | no |
+# | `n_steps` | steps of the relaxation | 1 | |
+#
+# *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
+
+# %% tags=["nbval-check-output"]
+case = classroom.load("class")
+bone = segment.segment(case.ct)
+openings = lesion.find(bone)
+patch = slicewise.design(bone, openings).patch
+print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
+
+# %% [markdown]
+# ## 1. Marching cubes
+#
+# Take eight neighbouring voxels as the corners of a cube. Some are in, some are out: 256 cases. A table gives the
+# triangles of each case, with corners half-way along the edges of the cube. March on to the next cube.
+#
+# **Predict.** Planes are 2.5 mm apart, pixels 0.9 mm. How high will the stairs be?
+
+# %% tags=["nbval-check-output"]
+raw = surface.extract(patch, smooth=False)
+smooth = surface.extract(patch)
+print(f"raw: {len(raw.faces)} faces, area {raw.areas.sum() / 100:.1f} cm2")
+print(f"smooth: {len(smooth.faces)} faces, area {smooth.areas.sum() / 100:.1f} cm2")
+
+# %% tags=["nbval-check-output"]
+nothing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+towards = openings[0].direction + [0, 0, 0.4]
+figure = plot.view_figure(nothing, raw, towards, px=0.14)
+alt = "The raw prosthesis: steps run round it like the contour lines of a map."
+classroom.picture(figure, alt, f"raw, area {raw.areas.sum() / 100:.1f} cm2")
+
+# %% tags=["nbval-check-output"]
+figure = plot.view_figure(nothing, smooth, towards, px=0.14)
+alt = "The same prosthesis, smoothed: the steps are gone, the outline is the same."
+classroom.picture(figure, alt, f"smooth, area {smooth.areas.sum() / 100:.1f} cm2")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# One plane high (2.5 mm) where the surface is flat, one pixel deep (0.9 mm) where it is steep. Stairs also add
+# area: on a slope of 45 degrees by up to 41 %, however fine the voxels are. Volume has no such flaw.
+#
+# </details>
+#
+# ## 2. How far may it move?
+#
+# Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half
+# a voxel along each axis *without contradicting the data*, and not further. `surface.extract` finds the smoothest
+# surface within these bounds and keeps the volume.
+
+# %% tags=["nbval-check-output"]
+moved = surface.deviation(raw, smooth)
+bound = np.linalg.norm(patch.spacing) / 2
+print(f"moved by {moved.mean:.2f} mm on average, {moved.max:.2f} at most; allowed {bound:.2f}")
+print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm3 after")
+
+# %% [markdown]
+# ## 3. Can it be built?
+#
+# A solid has an inside. Every edge joins two faces, neighbours agree on what is outside, and nothing passes through
+# itself.
+
+# %% tags=["nbval-check-output"]
+report = check_mesh(smooth)
+print(
+    f"open edges {report.n_open_edges}, flipped {report.n_flipped_edges}, "
+    f"pinches {report.n_pinches}"
+)
+print(f"parts {report.n_parts}, crossings {report.n_crossings}, sound: {report.sound}")
+print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
+
+# %% tags=["nbval-check-output"]
+data = implant.implant_data(smooth)
+print(f"{data.volume_cm3:.1f} cm3")
+for material, mass in data.mass_g.items():
+    print(f"{material:10} {mass:5.1f} g")
+
+# %% tags=["nbval-check-output"]
+path = Path(tempfile.mkdtemp()) / "prosthesis.stl"
+export.write_mesh(smooth, path)
+print(f"{path.name}: {path.stat().st_size} bytes = 84 + 50 x {len(smooth.faces)} faces")
+
+# %% [markdown]
+# Note that an STL file knows no unit. Everybody assumes mm; 3MF says so.
+#
+# ## A mistake to make once
+#
+# Give the workshop the outer side only. It looks fine on screen, but it is a skin without an inside:
+
+# %% tags=["raises-exception"]
+sides = surface.face_sides(smooth, bone, openings[0].head_centre)
+skin = Mesh(smooth.vertices, smooth.faces[sides == 0])
+export.write_mesh(skin, path)
+
+# %% [markdown]
+# ## Exercises
+#
+# **Exercise 6.1.** The volume of a closed mesh. Each face and the origin make a tetrahedron of (signed) volume
+# a . (b x c) / 6. Add them up.
+
+
+# %% tags=["solution"]
+def mesh_volume(vertices, faces):
+    """Volume enclosed by triangles (F, 3) of vertices (V, 3)."""
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("6.1", mesh_volume)
+
+# %% [markdown]
+# **Exercise 6.2.** Forgotten spacing. Marching cubes on a plain array gives vertices in voxels. Turn them into mm.
+
+
+# %% tags=["solution"]
+def to_mm(index, spacing):
+    """Positions in mm of indices (n, 3), along the same axes; spacing (3,) in mm."""
+    return index * spacing
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("6.2", to_mm)
+
+# %% [markdown]
+# ## Summary
+#
+# - Marching cubes is exact about what is in and out, and blind between voxels: hence the stairs.
+# - Smooth within half a voxel, and say how far.
+# - A mesh that leaves must be closed, manifold and free of crossings.
+#
+# | paper | code | unit |
+# |---|---|---|
+# | marching cubes | `surface.extract(smooth=False)` | mm |
+# | staircase defect | `surface.extract(smooth=True)` | mm |
+# | digital model | `Prosthesis.mesh`, `export.write_mesh` | mm |
+# | top, inner surface | `Prosthesis.surface(OUTER)`, `(INNER)` | mm |
+#
+# **Further reading.** Lorensen and Cline, *Marching cubes*, SIGGRAPH 1987. Gibson, *Constrained elastic surface nets*
+# (1998).

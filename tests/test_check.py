@@ -1,0 +1,266 @@
+"""Checks of exercises: the shipped solution passes, the stub gets the teaching message, typical answers their hint."""
+
+import ast
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy import ndimage
+from scipy.spatial import cKDTree
+from skimage.morphology import convex_hull_image
+
+from cranio_nb import check, lessons
+from cranio_nb.balloon import PAPER_PRESSURE, inflate, tangent_pressure
+from cranio_nb.curves import cubic
+from cranio_nb.exercises import EXERCISES
+
+SOURCES = sorted((Path(__file__).parents[1] / "notebooks" / "src").glob("*.py"))
+LIBRARY = {
+    "np": np,
+    "ndimage": ndimage,
+    "cKDTree": cKDTree,
+    "convex_hull_image": convex_hull_image,
+    "inflate": inflate,
+    "cubic": cubic,
+    "tangent_pressure": tangent_pressure,
+    "PAPER_PRESSURE": PAPER_PRESSURE,
+}
+
+
+def shipped(stub):
+    """Exercise -> the function of its solution cell, or of its stub in the student's copy."""
+    found = {}
+    for source in SOURCES:
+        cells = lessons.read(source).cells
+        for cell in cells:
+            if "solution" in lessons.tags(cell):
+                number = lessons._next_number(cells, cell)
+                text = lessons._stub(cell.source, number) if stub else cell.source
+                found[number] = function(text)
+    return found
+
+
+def function(text):
+    room = dict(LIBRARY)
+    exec(text, room)  # the project's own lesson texts
+    return room[ast.parse(text).body[-1].name]
+
+
+SOLUTIONS, STUBS = shipped(False), shipped(True)
+
+# what students write, and a word of the hint that they should get
+WRONG = {
+    "0.1": [
+        ("return mask.sum()", "counts voxels"),
+        ("return mask.sum() * spacing[0] * spacing[1] * spacing[2]", "1000 mm3"),
+        ("return np.count_nonzero(mask) * spacing[1] * spacing[2] / 1000", "area"),
+    ],
+    "0.2": [
+        ("return np.sum(a & b) / np.sum(a | b)", "Jaccard"),
+        ("return np.logical_and(a, b).sum() / (a.sum() + b.sum())", "factor 2"),
+        ("return np.mean(a == b)", "air"),
+    ],
+    "1.1": [
+        ("return 255 * (hu - centre + width / 2) / width", "clip"),
+        ("return np.clip((hu - centre) / width, 0, 1) * 255", "starts at"),
+        ("return np.clip((hu - centre) / width + 0.5, 0, 1)", "0 to 1"),
+    ],
+    "1.2": [
+        ("return affine[:3, :3].dot(index)", "origin"),
+        ("return (affine @ np.append(index[::-1], 1))[:3]", "turn it round"),
+        ("return index @ affine[:3, :3] + affine[:3, 3]", "transposed"),
+    ],
+    "1.3": [
+        ("z = sorted(positions[:, 2]); return np.median(np.diff(z))", "tilted"),
+        ("return np.median(np.diff(positions @ normal))", "any order"),
+        ("return positions[1, 2] - positions[0, 2]", "any order"),
+    ],
+    "2.1": [
+        ("labels, n = ndimage.label(mask); return labels == 1", "met first"),
+        ("l, n = ndimage.label(mask); return l == np.bincount(l.ravel()).argmax()", "background"),
+        ("return mask", "Nothing was dropped"),
+    ],
+    "2.2": [
+        ("return ndimage.binary_fill_holes(mask)", "brain"),
+        ("return mask.copy()", "No hole"),
+        (
+            "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); return mask | ((s[l] <= max_pixels) & (l > 0))",
+            "border",
+        ),
+    ],
+    "3.1": [
+        ("return ndimage.binary_dilation(bone) & ~bone", "outside the bone"),
+        ("return ndimage.binary_dilation(bone) & ~ndimage.binary_erosion(bone)", "two pixels"),
+        ("return bone & ~ndimage.binary_erosion(bone, np.ones((3, 3)))", "cross"),
+    ],
+    "3.2": [
+        ("a, b = np.polyfit(points[:, 0], points[:, 1], 1); return np.array([1, a])", "upright"),
+        ("return np.linalg.svd(points)[2][0]", "centred"),
+        ("return np.linalg.svd(points - points.mean(0))[2][-1]", "normal"),
+    ],
+    "3.3": [
+        ("return np.arange(len(points))", "counts points"),
+        ("return np.hypot(*(points - points[0]).T)", "straight"),
+        ("return np.cumsum(np.hypot(*np.diff(points, axis=0).T))", "first point is missing"),
+    ],
+    "4.1": [
+        ("return k * n ** 2 / 8", "N = n - 1"),
+        ("return k * (n - 1) ** 2 / 2", "middle"),
+        ("return k * (n - 1) ** 2", "factor"),
+    ],
+    "4.2": [
+        ("return length * (np.tan(theta0) - np.tan(theta1)) / n ** 2", "N = n - 1"),
+        ("return length * (np.tan(theta0) + np.tan(theta1)) / (n - 1) ** 2", "negative"),
+        ("r = np.radians; return length * (np.tan(r(theta0)) - np.tan(r(theta1))) / (n - 1) ** 2", "radians"),
+    ],
+    "4.3": [
+        ("k = PAPER_PRESSURE", "paper's k"),
+        ("k = -tangent_pressure(length, theta0, theta1, n)", "into the head"),
+        ("k = 0", "flat"),
+        ("return np.linspace([0, 0], [length, 0], n)", "chord"),
+    ],
+    "5.1": [
+        ("return np.vstack([outer, inner])", "bow tie"),
+        ("return outer", "inner curve is missing"),
+        ("return inner", "outer curve is missing"),
+    ],
+    "5.2": [
+        ("return region", "Bone is still"),
+        ("return region != bone", "rest of the skull"),
+        ("return region & bone", "must go"),
+    ],
+    "5.3": [
+        ("return convex_hull_image(bone) & ~bone", "whole difference"),
+        ("return ndimage.binary_fill_holes(bone) & ~bone", "convex hull"),
+        (
+            "l, n = ndimage.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel()); s[0] = 0; "
+            "return (s >= min_pixels)[l]",
+            "brain's place",
+        ),
+    ],
+    "6.1": [
+        ("a, b, c = vertices[faces].swapaxes(0, 1); return (a * np.cross(b, c)).sum() / 3", "Twice"),
+        ("a, b, c = vertices[faces].swapaxes(0, 1); return abs((a * np.cross(b, c)).sum(1)).sum() / 6", "signs"),
+        ("a, b, c = vertices[faces].swapaxes(0, 1); return (a * np.cross(c, b)).sum() / 6", "sign is wrong"),
+    ],
+    "6.2": [
+        ("return index", "still voxels"),
+        ("return index * spacing[::-1]", "turn it round"),
+        ("return index / spacing", "Divided"),
+    ],
+    "7.1": [
+        ("return np.percentile(cKDTree(b).query(a)[0], 95)", "One way"),
+        ("return max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max())", "largest"),
+        ("return np.concatenate([cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]]).mean()", "mean distance"),
+    ],
+    "7.2": [
+        ("return points - np.outer((points - origin) @ normal, normal)", "twice as far"),
+        ("return points - 2 * np.outer(points @ normal, normal)", "origin given"),
+        ("return points * [-1, 1, 1]", "x = 0"),
+    ],
+    "10.1": [
+        ("v = [s[key][side] for s in slices]; return min(v), max(v)", "no balloon"),
+        ("v = [s[key][1 - side] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "side 0"),
+        ("v = [s[key][side] for s in slices if s['status'] == 'balloon']; return max(v), min(v)", "first"),
+    ],
+    "10.2": [
+        ("return np.arcsin(chord / (2 * radius))", "radians"),
+        ("return np.degrees(np.arctan(chord / 2 / radius))", "sine"),
+        ("return 2 * np.degrees(np.arcsin(chord / 2 / radius))", "centre"),
+    ],
+}
+BALLOON_END = (
+    "slopes = np.array([[length, length * np.tan(t)] for t in (theta0, theta1)]) / (n - 1); "
+    "return inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve"
+)
+
+
+def written(name, body):
+    """The shipped function's head with another body."""
+    head = SOLUTIONS[name].__code__
+    arguments = ", ".join(head.co_varnames[: head.co_argcount])
+    if name == "4.3" and "return" not in body:
+        body = f"{body}; {BALLOON_END}"
+    return function(f"def answer({arguments}):\n    {body}")
+
+
+def test_every_exercise_has_a_solution_and_three_wrong_answers():
+    assert list(SOLUTIONS) == list(EXERCISES) == list(WRONG)
+    assert all(len(answers) >= 3 for answers in WRONG.values())
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_the_solution_passes(name):
+    verdict = check.exercise(name, SOLUTIONS[name])
+    assert verdict.passed and verdict.points == verdict.out_of == 3
+    assert str(verdict) == f"Exercise {name}: 3 of 3 points. {verdict.message}"
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_the_stub_is_told_what_to_do(name):
+    verdict = check.exercise(name, STUBS[name])
+    assert verdict.points == 0 and "Nothing here yet" in str(verdict)
+
+
+@pytest.mark.parametrize(("name", "body", "hint"), [(n, *w) for n, wrong in WRONG.items() for w in wrong])
+def test_a_typical_wrong_answer_gets_its_hint(name, body, hint):
+    verdict = check.exercise(name, written(name, body))
+    assert not verdict.passed and hint in verdict.message
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_own_catalogue_says_what_it_should(name):
+    for mistake, sentence in EXERCISES[name].mistakes:
+        verdict = check.exercise(name, mistake)
+        assert not verdict.passed and verdict.message == sentence
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+@pytest.mark.parametrize(
+    ("answer", "said"),
+    [
+        (None, "A function is wanted"),
+        (3.0, "A function is wanted"),
+        (lambda *a: None, "returns nothing"),
+        (lambda *a: 1 / 0, "ZeroDivisionError"),
+        (lambda: 1, "TypeError"),
+        (lambda *a: "text", "right form"),
+        (lambda *a: np.full(7, np.nan), "right form"),
+        (lambda *a: {"a": object()}, "right form"),
+    ],
+    ids=["none", "number", "nothing", "fails", "arguments", "text", "nan", "object"],
+)
+def test_never_raises_and_says_one_line(name, answer, said):
+    line = str(check.exercise(name, answer))
+    assert said in line and "\n" not in line
+    assert line == str(check.exercise(name, answer))
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_hints_come_in_stages(name):
+    lines = [str(check.exercise(name, STUBS[name], hint=stage)) for stage in range(5)]
+    assert "hint=1" in lines[0] and "Hint 1 of 3" in lines[1] and "Hint 3 of 3" in lines[3] == lines[4][:0] + lines[3]
+    assert lines[3] == lines[4] and len({*lines}) == 4
+
+
+def test_gives_points_for_part_of_the_cases():
+    upright_only = written("1.3", "return np.median(np.diff(np.sort(positions[:, 2])))")
+    assert check.exercise("1.3", upright_only).points == 2
+
+
+def test_says_how_far_off_an_unknown_answer_is_in_its_unit():
+    verdict = check.exercise("4.3", lambda length, a, b, n: cubic(length, a, b, n) + np.array([0, 5.0]))
+    assert "mm, where 0.5 mm is allowed" in verdict.message
+
+
+def test_sees_a_changed_input():
+    def greedy(mask, max_pixels):
+        mask[:] = False
+        return mask
+
+    assert "work on a copy" in check.exercise("2.2", greedy).message
+
+
+def test_names_the_exercises_when_there_is_no_such():
+    verdict = check.exercise("9.9", len)
+    assert not verdict.passed and "4.2" in str(verdict)
