@@ -45,16 +45,22 @@ class Canvas:
         large = Image.fromarray(rgb).resize((_SCALE * rgb.shape[1], _SCALE * rgb.shape[0]), Image.Resampling.NEAREST)
         self._image.paste(large, (round(_SCALE * x), round(_SCALE * y)))
 
+    def inlay(self, other: Canvas, x: float, y: float) -> None:
+        """Put another canvas with its upper left corner at (x, y)."""
+        self._image.paste(other._image, (round(_SCALE * x), round(_SCALE * y)))
+
     def show(self, rgb: RGB, window: Window, *, smooth: bool = False) -> None:
         """Show a slice, shape (R, C, 3), in a window."""
-        x, y, width, height = (round(_SCALE * v) for v in window.box)
+        x, y, width, height = (round(v) for v in window.box)
         (top, bottom), (left, right) = window.rows, window.cols
-        resample = Image.Resampling.BILINEAR if smooth else Image.Resampling.NEAREST
         extent = (left + 0.5, top + 0.5, right + 0.5, bottom + 0.5)  # of pixel edges, not centres
-        part = Image.fromarray(rgb).transform(
-            (width, height), Image.Transform.EXTENT, extent, resample, fillcolor=WHITE
-        )
-        self._image.paste(part, (x, y))
+        size, resample = (_SCALE * width, _SCALE * height), Image.Resampling.NEAREST
+        if smooth and window.zoom != 1:  # interpolate at the finished size, where it is seen
+            size, resample = (width, height), Image.Resampling.BILINEAR
+        part = Image.fromarray(rgb).transform(size, Image.Transform.EXTENT, extent, resample, fillcolor=WHITE)
+        if part.size != (_SCALE * width, _SCALE * height):
+            part = part.resize((_SCALE * width, _SCALE * height), Image.Resampling.NEAREST)
+        self._image.paste(part, (_SCALE * x, _SCALE * y))
 
     def line(
         self, points: ArrayLike, colour: str, *, width: float = 2.0, dash: tuple[float, float] | None = None

@@ -3,6 +3,7 @@
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
@@ -73,3 +74,18 @@ def test_the_doctor_sees_what_stands_before_the_browser(monkeypatch, mark, name)
 def test_opening_the_lab_is_not_loaded_with_the_command_line():
     code = "import sys, cranio_nb.cli; print('cranio_nb.lab' in sys.modules, 'jupyterlab' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.split() == ["False"] * 2
+
+
+BINDER = Path(lab.__file__).parents[1] / "binder"
+
+
+@pytest.mark.skipif(not BINDER.is_dir(), reason="only a checkout has Binder's files")
+def test_binder_installs_what_is_there():
+    build = (BINDER / "postBuild").read_text()
+    root = BINDER.parent
+    assert all((root / name).is_file() for name in ("constraints.txt", "cranio_nb/lab_settings/overrides.json"))
+    assert "constraints.txt" in build and "cranio_nb/lab_settings/overrides.json" in build
+    assert "libosmesa6" in (BINDER / "apt.txt").read_text().split()
+    assert all((BINDER / name).stat().st_mode & 0o111 for name in ("postBuild", "start"))
+    for name in ("postBuild", "start"):
+        assert subprocess.run(["bash", "-n", str(BINDER / name)], check=False).returncode == 0

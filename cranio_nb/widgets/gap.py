@@ -177,4 +177,4 @@ def _close_up(
     inset.text(width - 10, 20, f"end {side + 1}", anchor="rs", halo=True)
     edge = [(0, 0), (width - 1, 0), (width - 1, height - 1), (0, height - 1), (0, 0)]
     inset.line(edge, GREY, width=1)
-    canvas.place(inset.array(), x, y)
+    canvas.inlay(inset, x, y)

@@ -199,7 +199,7 @@ def _draw_gap(canvas: Canvas, scene: Scene, run: Inflation, step: int) -> None:
     inset.scale_bar(14, _HEIGHT - 14, bar / unit * window.zoom, f"{bar:g} {'px' if scene.px is None else 'mm'}")
     legend = [(ORANGE, "dash", "start"), (BLUE, "line", f"balloon, step {step}"), (GREEN, "line", "end tangents")]
     inset.legend(_WIDTH - 178, _HEIGHT - 70, legend)
-    canvas.place(inset.array(), 0, 0)
+    canvas.inlay(inset, 0, 0)
 
 
 def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:

@@ -118,7 +118,7 @@ def patch_view(stack: Stack, plane: int, curves: bool) -> View:
             inset.line(window.px(curve), line, width=2.5, dash=dash)
     dress(inset, window, stack.bone, plane)
     inset.legend(SIDE - 140, 6, [(BLUE, "line", "outer curve"), (VERMILLION, "dash", "inner curve")])
-    canvas.place(inset.array(), 0, 0)
+    canvas.inlay(inset, 0, 0)
     _draw_areas(canvas, stack, at)
     found = sorted({s.status for s in stack.slices}, key=list(_WORDS).index)
     canvas.legend(SIDE + 58, 330, [(_WORDS[s][1], "area", _WORDS[s][0]) for s in found])

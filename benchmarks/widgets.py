@@ -1,0 +1,121 @@
+"""How fast pictures follow a slider on a 512 x 512 scan: prints a table for the reader, tests nothing.
+
+    python benchmarks/widgets.py [--repeats 40] [--size full]
+
+Measured is the kernel's side: from the moment a slider's value arrives to the moment the new image is on its widget.
+Beside it the same update through a new matplotlib figure, and through one figure whose data are replaced.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+os.environ["CRANIO_NB_MODE"] = "widget"
+
+from cranio_nb import features, lesion, plot, run, widgets
+from cranio_nb.methods import slicewise
+from cranio_nb.volume import Volume
+from data_synth import phantom_case
+
+
+def moves(values: list, repeats: int) -> Iterator:
+    """Values to and fro, so that each one is a change."""
+    for i in range(repeats):
+        yield values[i % len(values)]
+
+
+def measure(panel: widgets.Panel, control: str, values: list, repeats: int) -> np.ndarray:
+    """Seconds from each new value of a slider to its picture."""
+    slider, took = panel.front.controls[control], []
+    for value in moves(values, repeats):
+        image, start = panel.front.image.value, time.perf_counter()
+        slider.value = value
+        took.append(time.perf_counter() - start)
+        assert panel.front.image.value is not image
+    return np.array(took)
+
+
+def time_calls(call: Callable[[int], object], repeats: int) -> np.ndarray:
+    """Seconds of each call."""
+    took = []
+    for i in range(repeats):
+        start = time.perf_counter()
+        call(i)
+        took.append(time.perf_counter() - start)
+    return np.array(took)
+
+
+def new_figure(ct: Volume) -> Callable[[int], bytes]:
+    """A slice through a new figure each time."""
+
+    def draw(i: int) -> bytes:
+        figure, ax = plot.new_figure(512 / plot.DPI, 512 / plot.DPI)
+        ax.imshow(ct.voxels[i % ct.shape[0]], cmap="gray", vmin=-450, vmax=1050)
+        return plot.png(figure)
+
+    return draw
+
+
+def same_figure(ct: Volume) -> Callable[[int], bytes]:
+    """A slice through one figure with new data."""
+    figure, ax = plot.new_figure(512 / plot.DPI, 512 / plot.DPI)
+    image = ax.imshow(ct.voxels[0], cmap="gray", vmin=-450, vmax=1050)
+
+    def draw(i: int) -> bytes:
+        image.set_data(ct.voxels[i % ct.shape[0]])
+        return plot.png(figure)
+
+    return draw
+
+
+def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
+    """Name and times of each update."""
+    case = phantom_case(size)
+    ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
+    lesions = lesion.find(bone)
+    one, px = lesions[0], float(bone.spacing[1])
+    plane = sum(one.planes) // 2
+    near = list(range(plane - 4, plane + 5))
+    yield "new matplotlib figure: slice", time_calls(new_figure(ct), repeats)
+    yield "same matplotlib figure, new data: slice", time_calls(same_figure(ct), repeats)
+    viewer, bony = widgets.ct_viewer(ct), widgets.threshold(ct)
+    yield "ct_viewer: slice", measure(viewer, "plane", near, repeats)
+    yield "ct_viewer: window width", measure(viewer, "width", [400, 1500, 2500], repeats)
+    yield "threshold: HU", measure(bony, "hu", [200, 300, 400, 500, 600], repeats)
+    yield "threshold: slice", measure(bony, "plane", near, repeats)
+    seen = widgets.features(bone, plane, opening=one.opening)
+    yield "features: skip", measure(seen, "skip", [1.0, 2.5, 4.0, 5.5], repeats)
+    yield "features: reach", measure(seen, "reach", [6.0, 9.0, 12.0, 15.0], repeats)
+    yield "features: slice, all new", measure(widgets.features(bone, plane), "plane", list(range(20, 60)), repeats)
+    ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.opening.voxels[plane], skip=4.5 / px)
+    inside = bone.to_voxel(one.head_centre)[1:]
+    ball = widgets.balloon(ends, inside, background=bone.voxels[plane], px=px)
+    fresh = np.round(np.linspace(0.0, 0.39, repeats), 3).tolist()
+    yield "balloon: k, all new", measure(ball, "pressure", fresh, repeats)
+    yield "balloon: N", measure(ball, "n", [11, 21, 31, 41], repeats)
+    yield "balloon: step (the player)", measure(ball, "step", list(range(5, 60)), repeats)
+    yield "patch: slice", measure(widgets.patch(bone, one), "plane", near, repeats)
+    made = slicewise.design(bone, lesions, axial=True)
+    true = run.check_truth(made, bone.with_voxels(case.implant), bone, one).prosthesis
+    shown = widgets.evaluation(made, true)
+    yield "evaluation: scale", measure(shown, "top", [0.5, 1.0, 2.0], repeats)
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--repeats", type=int, default=40)
+    parser.add_argument("--size", default="full")
+    asked = parser.parse_args()
+    print(f"{'update':42} {'median':>8} {'p95':>8}   ms")
+    for name, took in rows(asked.size, asked.repeats):
+        print(f"{name:42} {1e3 * np.median(took):8.1f} {1e3 * np.percentile(took, 95):8.1f}", flush=True)
+
+
+if __name__ == "__main__":
+    main()
