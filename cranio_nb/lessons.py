@@ -32,6 +32,10 @@ _METADATA = {
     "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
 }
 _QUIET = {"CRANIO_NB_MODE": "static", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TQDM_DISABLE": "1"}
+_TO_STUDENTS = (
+    "*This is the copy to work in. Run the cells from the top. Where you meet `raise NotImplementedError`, put your "
+    "own lines in its place, then run the check below it. Solutions and expected pictures are folded away: try first.*"
+)
 _TIMEOUT = 300  # s for one cell
 _NUMBER = re.compile(r"check\.exercise\(\"(\d+\.\d+)\"")
 _POINTS = re.compile(r"Exercise ([\d.]+): (\d+) of (\d+) points")
@@ -162,9 +166,10 @@ def points(path: Path) -> dict[str, tuple[int, int]]:
 
 def exercise_copy(lesson: NotebookNode) -> NotebookNode:
     """The copy that a student fills in: stubs for solutions, no outputs, expected pictures and answers folded away."""
-    cells: list[NotebookNode] = []
+    first, *rest = lesson.cells
+    cells = [new_markdown_cell(first.source), new_markdown_cell(_TO_STUDENTS)]
     solution = ""
-    for cell in lesson.cells:
+    for cell in rest:
         if cell.cell_type == "markdown":
             cells.append(new_markdown_cell(cell.source))
             continue

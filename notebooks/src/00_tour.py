@@ -44,9 +44,9 @@ from cranio_nb import (
     evaluate,
     features,
     lesion,
-    plot,
     render,
     segment,
+    view3d,
     widgets,
 )
 from cranio_nb.mesh_check import check_mesh
@@ -143,11 +143,12 @@ if case.truth is not None:
 
 # %% tags=["nbval-check-output"]
 skull = render.skull_surface(bone)
-figure = plot.view_figure(skull, prosthesis.mesh, openings[0].direction, px=0.4)
 alt = "A pale skull seen from its side; the hole is closed by the prosthesis, in blue."
-classroom.picture(figure, alt, f"{report.n_parts} prosthesis in {len(openings)} opening")
+view3d.show(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
 
 # %% [markdown]
+# *In a live notebook you can turn this head with the mouse.*
+#
 # That is the whole way: a scan went in, a solid came out. The rest of the course asks at each step: *why does this
 # work, when does it fail, and how do we know?*
 #

@@ -26,7 +26,7 @@ import numpy as np
 from scipy import ndimage
 from skimage.morphology import convex_hull_image
 
-from cranio_nb import check, classroom, evaluate, fill, lesion, segment, tables
+from cranio_nb import check, classroom, evaluate, fill, lesion, segment, tables, widgets
 from cranio_nb.methods import slicewise
 
 # %% [markdown]
@@ -137,6 +137,21 @@ if case.truth is not None:
 
 # %% [markdown]
 # The paper had 23 slices with a lesion, 3 of them by the hull and 20 by balloons.
+#
+# **Predict, then move, then explain.** Go through the slices below from the first to the last. Where will the patch be
+# thinnest, and where does the hull take over from the balloon?
+
+# %% tags=["nbval-check-output"]
+widgets.patch(bone, opening)
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# At the upper and lower end of the hole, where the cutter leaves part of the thickness: there the ring is closed, the
+# hull fills a thin sickle, and the step to the next slice is the largest. This is one source of the staircase.
+#
+# </details>
 #
 # ## 4. In which direction to slice?
 #

@@ -28,7 +28,17 @@ from pathlib import Path
 
 import numpy as np
 
-from cranio_nb import check, classroom, export, implant, lesion, plot, segment, surface
+from cranio_nb import (
+    check,
+    classroom,
+    export,
+    implant,
+    lesion,
+    plot,
+    segment,
+    surface,
+    widgets,
+)
 from cranio_nb.mesh import Mesh
 from cranio_nb.mesh_check import check_mesh
 from cranio_nb.methods import slicewise
@@ -98,6 +108,21 @@ print(f"moved by {moved.mean:.2f} mm on average, {moved.max:.2f} at most; allowe
 print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm3 after")
 
 # %% [markdown]
+# **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
+# leave the bound by taking very many?
+
+# %% tags=["nbval-check-output"]
+widgets.surface(patch)
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# About ten steps bring most of it, and two hundred hardly more than the default 24. You cannot leave the bound: each vertex is clipped to its box of half a voxel in every step, and what
+# would go further stops at the wall.
+#
+# </details>
+#
 # ## 3. Can it be built?
 #
 # A solid has an inside. Every edge joins two faces, neighbours agree on what is outside, and nothing passes through

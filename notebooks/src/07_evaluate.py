@@ -26,7 +26,7 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from cranio_nb import check, classroom, evaluate, lesion, plot, segment
+from cranio_nb import check, classroom, evaluate, lesion, segment, widgets
 from cranio_nb.methods import slicewise
 from cranio_nb.run import check_truth
 
@@ -56,31 +56,21 @@ for side, distances in seen.distances.items():
     print(f"{side}  {row.min:5.2f} {row.max:5.2f} {row.mean:5.2f} {row.std:5.2f}")
 
 # %% tags=["nbval-check-output"]
-outer = made.surface(0)
-figure = plot.distance_figure(
-    made.mesh, outer, seen.distances["outer"], openings[0].direction, top=1.0, px=0.16
-)
-alt = "The outer side, dark where it is near the true surface, brighter at the rim."
-classroom.picture(figure, alt, f"mean {seen.distances['outer'].mean():.2f} mm")
-
-# %% tags=["nbval-check-output"]
-fig, (ax,) = classroom.axes(height=2.8)
-for side, colour, style in (("outer", "#0072B2", "-"), ("inner", "#D55E00", "--")):
-    ax.hist(
-        seen.distances[side],
-        np.linspace(0, 1, 51),
-        histtype="step",
-        color=colour,
-        ls=style,
-        label=side,
-    )
-ax.set(xlabel="distance from the true surface (mm)", ylabel="nodes")
-ax.legend()
-alt = "Two histograms of distances: most nodes lie within 0.3 mm, with a thin tail."
-within = (seen.distances["outer"] < 0.5).mean()
-classroom.picture(fig, alt, f"{within:.0%} of the outer nodes within 0.5 mm")
+widgets.evaluation(made, seen.prosthesis)
 
 # %% [markdown]
+# **Predict, then move, then explain.** Where on the prosthesis will the largest distances lie: in its middle or at its
+# rim? Switch to the inner side. Is it better or worse?
+#
+# <details>
+# <summary>Answer</summary>
+#
+# The middle of the gap is farthest from any bone and can be wrong by a whole tangent; but single large values sit at the
+# rim, where one voxel more or less of bevelled bone decides. The inner side is a little worse: its bone is less smooth and
+# the gap's inner ends are harder to see.
+#
+# </details>
+#
 # **Question.** Half of the prosthesis is cut off. What happens to the mean distance of Table 3?
 #
 # <details>
