@@ -104,12 +104,18 @@ def true(phantom, skull, lesions, design):
 
 
 @pytest.fixture(scope="session")
-def panels(ct, skull, lesions, arch, design, true):
+def again(ct, skull, lesions, arch, design, true):
     return lambda: make_all(ct, skull(), lesions()[0], arch, design, true)
 
 
+@pytest.fixture(scope="session")
+def panels(again):
+    """One panel of each kind, made once; tests may leave controls moved."""
+    return again()
+
+
 def test_every_static_panel_is_one_picture_with_alt_text_and_one_line(static, panels):
-    for name, panel in panels().items():
+    for name, panel in panels.items():
         data, metadata = panel._repr_mimebundle_()
         assert set(data) == {"image/png", "text/plain"}, name
         shape = np.asarray(Image.open(io.BytesIO(data["image/png"]))).shape
@@ -117,21 +123,16 @@ def test_every_static_panel_is_one_picture_with_alt_text_and_one_line(static, pa
         assert len(metadata["image/png"]["alt"]) > 40 and "\n" not in data["text/plain"], name
 
 
-def test_a_static_panel_is_the_same_on_every_run(static, panels):
-    first, second = ({n: p._repr_mimebundle_()[0] for n, p in panels().items()} for _ in range(2))
+def test_a_static_panel_is_the_same_on_every_run_and_makes_no_widget(static, panels, again):
+    first, second = ({n: p._repr_mimebundle_()[0] for n, p in some.items()} for some in (panels, again()))
     assert first == second
-
-
-def test_a_static_panel_makes_no_widget(static, panels):
-    for panel in panels().values():
-        panel._repr_mimebundle_()
-        assert "front" not in vars(panel)
+    assert not any("front" in vars(panel) for panel in panels.values())
 
 
 def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
     moves = {"ct_viewer": ("width", 400), "threshold": ("hu", 900), "features": ("reach", 25.0), "balloon": ("n", 41)}
     moves |= {"patch": ("curves", False), "surface": ("steps", 0), "evaluation": ("side", "inner")}
-    for name, panel in panels().items():
+    for name, panel in panels.items():
         assert close(pixels_of(panel), panel.view.rgb), name
         before = panel.front.image.value
         control, value = moves[name]
@@ -142,7 +143,7 @@ def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
 
 
 def test_every_control_is_labelled_and_within_its_limits(live, panels):
-    for panel in panels().values():
+    for panel in panels.values():
         for name, widget in panel.front.controls.items():
             assert widget.description and widget.tabbable is not False, name
             if hasattr(widget, "max"):
@@ -150,7 +151,7 @@ def test_every_control_is_labelled_and_within_its_limits(live, panels):
 
 
 def test_a_live_bundle_has_widget_picture_and_line(live, panels):
-    data, _ = panels()["threshold"]._repr_mimebundle_()
+    data, _ = panels["threshold"]._repr_mimebundle_()
     assert {"application/vnd.jupyter.widget-view+json", "image/png", "text/plain"} <= set(data)
 
 
