@@ -32,7 +32,8 @@ PINS = [line for line in (ROOT / "constraints.txt").read_text().splitlines() if 
 
 ON_BEHALF = {"networkx", "lxml", "pyjpegls"}  # asked for by trimesh and pydicom when they do our work
 MACHINE_PATH = re.compile(r"(?<![\w.~])/(home|root|work|tmp|Users|opt|mnt|srv)/\w")
-HOST = re.compile(r"\b(?:https?|ftp|file|ssh|git)://(?!doi\.org/)[\w.]*")
+# a doi is a citation, and the loopback address is on every machine
+HOST = re.compile(r"\b(?:https?|ftp|file|ssh|git)://(?!doi\.org/|127\.0\.0\.1\b|localhost\b)[\w.]*")
 
 
 def name_of(requirement):
