@@ -36,6 +36,13 @@ class Canvas:
         self._image = Image.new("RGB", (_SCALE * width, _SCALE * height), WHITE)
         self._draw = ImageDraw.Draw(self._image)
 
+    def copy(self) -> Canvas:
+        """The same picture, to draw on further."""
+        other = Canvas(1, 1)
+        other._image = self._image.copy()
+        other._draw = ImageDraw.Draw(other._image)
+        return other
+
     def array(self) -> RGB:
         """The finished picture, shape (height, width, 3)."""
         return np.asarray(self._image.reduce(_SCALE))

@@ -59,6 +59,7 @@ class Slices:
         self.opening = None if opening is None else opening.crop((slice(None), rows, cols))
         self.px = float(bone.spacing[1:].mean())
         self.seen = lru_cache(maxsize=8)(lambda plane: stage.slice_features(self.bone.voxels[plane]))
+        self.drawn = lru_cache(maxsize=8)(lambda plane: _ground(self, plane))
 
     def ends(self, plane: int, skip: float, reach: float) -> tuple[GapEnds, GapEnds]:
         """Outer and inner gap ends; `skip` and `reach` in mm."""
@@ -68,14 +69,35 @@ class Slices:
 
 def features_view(part: Slices, plane: int, skip: float, reach: float) -> View:
     """A slice with its features, and close-ups of both ends of its gap."""
-    canvas = Canvas(SIDE + 8 + _INSET, SIDE)
     mask = part.bone.voxels[plane]
     window = Window.whole((0, 0, SIDE, SIDE), mask.shape)
     try:
-        seen = part.seen(plane)
+        ground, rgb, seen, outside = part.drawn(plane)
     except stage.SliceProblem as problem:
+        canvas = Canvas(SIDE + 8 + _INSET, SIDE)
         canvas.show(tinted(plain(mask.shape), mask, BONE), window)
         return View(canvas.array(), f"Slice {plane}: {problem}")
+    canvas = ground.copy()
+    try:
+        pair = part.ends(plane, skip, reach)
+    except stage.SliceProblem as problem:
+        return View(canvas.array(), f"Slice {plane}: {problem}")
+    fits = [fitted(seen, outside, ends, skip / part.px, reach / part.px) for ends in pair]
+    _draw_ends(canvas, window, fits, part.px, 1.0)
+    for side in (0, 1):
+        middle = (pair[0].points[side] + pair[1].points[side]) / 2
+        _close_up(canvas, (SIDE + 8, side * (SIDE - _INSET), _INSET, _INSET), rgb, middle, fits, part.px, side)
+    counts = " and ".join(str(sum(len(points) for points in fit.used)) for fit in fits)
+    width = np.hypot(*np.diff(pair[0].points, axis=0)[0]) * part.px
+    line = f"Slice {plane}, skip {skip:g} mm, reach {reach:g} mm: {counts} boundary points carry the outer and inner "
+    return View(canvas.array(), line + f"tangents; the outer ends stand {width:.1f} mm apart.")
+
+
+def _ground(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatures, NDArray[np.bool_]]:
+    """All of a picture that `skip` and `reach` leave as it is; the slice in colours; which boundary is off the hull."""
+    seen, mask = part.seen(plane), part.bone.voxels[plane]
+    outside = ~seen.in_hull
+    canvas, window = Canvas(SIDE + 8 + _INSET, SIDE), Window.whole((0, 0, SIDE, SIDE), mask.shape)
     rgb = slice_picture(mask, seen)
     canvas.show(rgb, window)
     _draw_lines(canvas, window, seen)
@@ -85,19 +107,7 @@ def features_view(part: Slices, plane: int, skip: float, reach: float) -> View:
     lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S")]
     used = [(BLUE, "dot", "used, outer"), (VERMILLION, "dot", "used, inner"), (GREEN, "line", "tangents")]
     canvas.legend(SIDE / 2 - 90, SIDE / 2 - 66, [*bounds, *lines, *used])
-    try:
-        pair = part.ends(plane, skip, reach)
-    except stage.SliceProblem as problem:
-        return View(canvas.array(), f"Slice {plane}: {problem}")
-    fits = [fitted(seen, ends, skip / part.px, reach / part.px) for ends in pair]
-    _draw_ends(canvas, window, fits, part.px, 1.0)
-    for side in (0, 1):
-        middle = (pair[0].points[side] + pair[1].points[side]) / 2
-        _close_up(canvas, (SIDE + 8, side * (SIDE - _INSET), _INSET, _INSET), rgb, middle, fits, part.px, side)
-    counts = " and ".join(str(sum(len(points) for points in fit.used)) for fit in fits)
-    width = np.hypot(*np.diff(pair[0].points, axis=0)[0]) * part.px
-    line = f"Slice {plane}, skip {skip:g} mm, reach {reach:g} mm: {counts} boundary points carry the outer and inner "
-    return View(canvas.array(), line + f"tangents; the outer ends stand {width:.1f} mm apart.")
+    return canvas, rgb, seen, outside
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,9 +119,8 @@ class Fit:
     colour: str
 
 
-def fitted(seen: SliceFeatures, ends: GapEnds, skip: float, reach: float) -> Fit:
-    """The boundary points behind each tangent; lengths in px."""
-    outside = ~seen.in_hull
+def fitted(seen: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, skip: float, reach: float) -> Fit:
+    """The boundary points behind each tangent; `outside` says which lie off the hull; lengths in px."""
     is_outer = bool(outside[np.argmin(np.hypot(*(seen.boundary - ends.points[0]).T))])
     boundary = seen.boundary[outside == is_outer]
     runs = [run for spine in seen.skeleton for run in (spine, spine[::-1])]

@@ -6,7 +6,7 @@ Frame: slice (row, col) px of the scan; planes of the scan.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,10 +49,18 @@ class Stack:
     slices: tuple[slicewise.SliceResult, ...]
     patches: NDArray[np.bool_]
 
-    @property
+    @cached_property
     def areas(self) -> NDArray[np.float64]:
         """Area of each patch, mm2."""
         return self.patches.sum(axis=(1, 2)) * float(np.prod(self.bone.spacing[1:]))
+
+    @cached_property
+    def window(self) -> Window:
+        """All patches with some room around."""
+        rows, cols = np.nonzero(self.patches.any(axis=0))
+        low, high = np.array([rows.min(), cols.min()]), np.array([rows.max(), cols.max()])
+        room = 0.25 * (high - low).max() + 4
+        return Window.around((0, 0, SIDE, SIDE), low - room, high + room)
 
 
 def patch(bone: Volume, lesion: Lesion) -> Panel:
@@ -107,7 +115,7 @@ def patch_view(stack: Stack, plane: int, curves: bool) -> View:
     result, mask = stack.slices[at], stack.bone.voxels[plane]
     words, colour = _WORDS[result.status]
     canvas = Canvas(SIDE + 350, SIDE)
-    window = _window(stack)
+    window = stack.window
     inset = Canvas(SIDE, SIDE)
     rgb = tinted(
         tinted(plain(mask.shape), mask, BONE), stack.patches[at], colour if result.status != "skipped" else SKY
@@ -138,11 +146,3 @@ def _draw_areas(canvas: Canvas, stack: Stack, at: int) -> None:
         chart.bars(canvas, edges, np.array([area]), _WORDS[result.status][1])
     (x, y), *_ = chart.px([[stack.first + at, stack.areas[at]]])
     canvas.dots([(x, y)], "#FFFFFF", radius=4.5, edge=BLACK)
-
-
-def _window(stack: Stack) -> Window:
-    """All patches with some room around."""
-    rows, cols = np.nonzero(stack.patches.any(axis=0))
-    low, high = np.array([rows.min(), cols.min()]), np.array([rows.max(), cols.max()])
-    room = 0.25 * (high - low).max() + 4
-    return Window.around((0, 0, SIDE, SIDE), low - room, high + room)
