@@ -31,4 +31,7 @@ world  (x, y, z)            mm     DICOM LPS: x to the patient's left, y to the 
 =====  ===================  =====  ==========================================================================
 """
 
+from .readers import read_ct
+
+__all__ = ["__version__", "read_ct"]
 __version__ = "0.1.0"

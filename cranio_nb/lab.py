@@ -62,7 +62,7 @@ def open_lab(folder: Path | None = None, *, browser: bool = True, port: int | No
         ``NoLab`` when JupyterLab is not installed, ``NoLessons`` without lessons.
     """
     if find_spec("jupyterlab") is None:
-        raise InputRefused("NoLab", "JupyterLab is not installed.", 'Run: pip install "cranio-nb[lab,view]".')
+        raise InputRefused("NoLab", "JupyterLab is not installed.", 'Run: pip install -e ".[lab,view]".')
     command = lab_command(lessons_folder(folder), browser=browser, port=port)
     try:
         return subprocess.run(command, env=lab_environment(), check=False).returncode
