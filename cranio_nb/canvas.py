@@ -98,7 +98,7 @@ class Canvas:
         """Fill a box (x, y, width, height)."""
         x, y, width, height = (_SCALE * v for v in box)
         if width > 0 and height > 0:
-            self._draw.rectangle((x, y, x + width - 1, y + height - 1), fill=colour)
+            self._draw.rectangle((x, y, max(x, x + width - 1), max(y, y + height - 1)), fill=colour)
 
     def text(
         self,

@@ -10,13 +10,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from . import plot
+from . import features, plot
+from .errors import InputRefused
+from .prosthesis import Lesion
+from .readers import read_ct
 from .volume import Volume
 
 if TYPE_CHECKING:
@@ -66,7 +70,13 @@ class LessonCase:
 
 
 def load(
-    size: str = "class", *, defect: str = "unilateral", seed: int = 0, scan: str | os.PathLike[str] | None = None
+    size: str = "class",
+    *,
+    defect: str = "unilateral",
+    seed: int = 0,
+    scan: str | os.PathLike[str] | None = None,
+    truth: str | os.PathLike[str] | None = None,
+    needs_truth: bool = False,
 ) -> LessonCase:
     """The case of a lesson.
 
@@ -80,24 +90,65 @@ def load(
         Chooses head, place and rim.
     scan : path, optional
         A scan of one's own (DICOM folder, NIfTI or NRRD with HU) instead; ``CRANIO_NB_SCAN`` goes before it.
+    truth : path, optional
+        Mask of the bone that is missing in that scan, where it is known; ``CRANIO_NB_TRUTH`` goes before it.
+    needs_truth : bool
+        Whether the lesson makes no sense without a truth.
 
     Raises
     ------
     InputRefused
-        If the scan cannot be read.
+        If the scan or the truth cannot be read, or the truth is wanted and there is none (``NoTruth``).
     ValueError
         If there is no such size or defect.
     """
-    path = os.environ.get("CRANIO_NB_SCAN") or scan
+    path, known = os.environ.get("CRANIO_NB_SCAN") or scan, os.environ.get("CRANIO_NB_TRUTH") or truth
+    if path and needs_truth and not known:
+        raise InputRefused(
+            "NoTruth",
+            "This lesson measures against the bone that is missing, and for this scan it is not known.",
+            "Name its mask in CRANIO_NB_TRUTH (`cranio-nb phantom --from` cuts a hole and writes one), "
+            "or unset CRANIO_NB_SCAN.",
+        )
     if path:
-        from .readers import read_ct
+        from .run import read_truth
 
-        return LessonCase(read_ct(path)[0], None, None)
+        ct = read_ct(path)[0]
+        return LessonCase(ct, read_truth(known, ct) if known else None, None)
     from data_synth import phantom_case
 
     case = phantom_case(os.environ.get("CRANIO_NB_SIZE") or size, defect, seed)
     assert case.hu is not None
     return LessonCase(Volume(case.hu, case.affine), Volume(case.implant, case.affine), case)
+
+
+def bridged_plane(bone: Volume, opening: Lesion, *, skip: float, reach: float) -> int:
+    """The plane nearest to the middle of an opening in which both ends of the gap can be seen.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask.
+    opening : Lesion
+    skip, reach : float
+        As for `features.gap_ends`, px.
+
+    Raises
+    ------
+    InputRefused
+        ``NoAxialGap`` where no plane has both, as for a hole at the very top of the head.
+    """
+    first, end = opening.planes
+    for plane in sorted(range(first, end), key=lambda p: abs(p - (first + end) // 2)):
+        with suppress(features.SliceProblem):
+            seen = features.slice_features(bone.voxels[plane])
+            features.gap_ends(seen, opening.opening.voxels[plane], skip=skip, reach=reach)
+            return plane
+    raise InputRefused(
+        "NoAxialGap",
+        "In no slice of this scan can both ends of the gap be seen.",
+        "This lesson cuts as the paper does, along the scan's own slices: take a hole in the side of the head.",
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,6 +36,13 @@ _TO_STUDENTS = (
     "*This is the copy to work in. Run the cells from the top. Where you meet `raise NotImplementedError`, put your "
     "own lines in its place, then run the check below it. Solutions and expected pictures are folded away: try first.*"
 )
+_SET_UP = """# On Colab this installs the package; elsewhere it does nothing.
+# SOURCE is what pip can take: the package's name, a wheel that you uploaded, or "git+" and the project's address.
+SOURCE = "cranio-nb"
+import subprocess, sys
+
+if "google.colab" in sys.modules:
+    subprocess.run([sys.executable, "-m", "pip", "install", "-q", f"{SOURCE}[view]", "ipywidgets"], check=True)"""
 _TIMEOUT = 300  # s for one cell
 _NUMBER = re.compile(r"check\.exercise\(\"(\d+\.\d+)\"")
 _POINTS = re.compile(r"Exercise ([\d.]+): (\d+) of (\d+) points")
@@ -100,7 +107,7 @@ def out_of_step(folder: Path, only: str = "") -> list[str]:
 
 
 def read(source: Path) -> NotebookNode:
-    """A lesson text as a notebook without outputs, with ids that follow from its cells' text."""
+    """A lesson text as a notebook without outputs, with a cell for Colab; ids follow from the cells' text."""
     notebook = jupytext.read(source, fmt="py:percent")
     cells = [
         (new_markdown_cell if cell.cell_type == "markdown" else new_code_cell)(
@@ -109,7 +116,7 @@ def read(source: Path) -> NotebookNode:
         for cell in notebook.cells
     ]
     _check_solutions(source.stem, cells)
-    return _notebook(cells)
+    return _notebook([cells[0], new_code_cell(_SET_UP), *cells[1:]])
 
 
 def execute(notebook: NotebookNode) -> NotebookNode:

@@ -51,6 +51,13 @@ class Mesh:
         return np.divide(self.area_vectors, lengths, out=np.zeros((len(self.faces), 3)), where=lengths > 0)
 
     @property
+    def vertex_normals(self) -> NDArray[np.float64]:
+        """Outward unit normal of each vertex, the mean of its faces by area, shape (V, 3); zero without a face."""
+        corner, shares = self.faces.ravel(), np.repeat(self.area_vectors, 3, axis=0)
+        total = np.stack([np.bincount(corner, share, len(self.vertices)) for share in shares.T], axis=1)
+        return total / np.linalg.norm(total, axis=1, keepdims=True).clip(1e-12)
+
+    @property
     def volume(self) -> float:
         """Enclosed volume in mm3 by the divergence theorem; positive when normals point outward."""
         if not len(self.faces):

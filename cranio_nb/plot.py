@@ -180,14 +180,24 @@ def _boundaries(
 
 
 def _limits(ax: Axes, sliced: SlicedDesign) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Limits of x and y in mm around the curves, the same for every slice of a design; rows run down."""
-    curves = [s.curves.reshape(-1, 2) for s in sliced.slices if s.curves.size]
+    """Limits of x and y in mm around the curves, the same for every slice of a design; rows run down.
+
+    A balloon under too much pressure leaves any picture: what lies far from its gap is not followed.
+    """
+    curves = [np.clip(s.curves, *_reach(s)).reshape(-1, 2) for s in sliced.slices if s.curves.size]
     points = sliced.unit * np.concatenate(curves) if curves else _centre(sliced, sliced.frames[0])[None]
     low, high = points.min(axis=0) - _AROUND, points.max(axis=0) + _AROUND
     middle, half = (low + high) / 2, (high - low) / 2
     width, height = ax.get_window_extent().size
     half = np.maximum(half, [half[1] * height / width, half[0] * width / height])
     return (middle[1] - half[1], middle[1] + half[1]), (middle[0] + half[0], middle[0] - half[0])
+
+
+def _reach(result: SliceResult) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Corners of the box around the ends of both curves that is as wide again on each side, shape (2,) each."""
+    ends = result.curves[:, [0, -1]].reshape(-1, 2)
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    return low - np.ptp(ends, axis=0).max(), high + np.ptp(ends, axis=0).max()
 
 
 def views_of(directions: Sequence[ArrayLike]) -> dict[str, NDArray[np.float64]]:

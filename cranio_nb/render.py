@@ -175,7 +175,7 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px: float = 0.5, shad
     corners, share = faces[face[hit]], weight[hit][..., None]
     colour = (share * colours[corners]).sum(axis=1)
     if shaded:
-        normals = np.concatenate([_vertex_normals(s.mesh) for s in solids]) @ axes.T
+        normals = np.concatenate([s.mesh.vertex_normals for s in solids]) @ axes.T
         colour = _lit(colour, (share * normals[corners]).sum(axis=1))
     rgb = np.ones((height, width, 3), np.float32)
     rgb[hit] = colour
@@ -216,14 +216,6 @@ def _shares(n: int) -> NDArray[np.float32]:
     keep = i + j <= n
     shares = np.stack([i[keep], j[keep], n - i[keep] - j[keep]], axis=1) / n
     return shares.astype(np.float32)
-
-
-def _vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
-    """Unit normals of the vertices, shape (V, 3)."""
-    area = np.repeat(mesh.area_vectors, 3, axis=0)
-    index = mesh.faces.ravel()
-    total = np.stack([np.bincount(index, a, len(mesh.vertices)) for a in area.T], axis=1)
-    return total / np.linalg.norm(total, axis=1, keepdims=True).clip(1e-12)
 
 
 def _lit(colour: NDArray, normal: NDArray) -> NDArray:

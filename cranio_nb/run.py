@@ -148,7 +148,7 @@ def run_design(
     clock = _Clock()
     tell("reading", 0.0)
     scan, load = read_ct(path, mask=mask, allow=allow, progress=lambda i, n: tell("reading", 0.3 * i / n))
-    known = None if truth is None else _read_truth(truth, scan)
+    known = None if truth is None else read_truth(truth, scan)
     clock.lap("read")
     tell("bone", 0.3)
     bone, lesions, threshold = find_openings(scan, threshold)
@@ -252,7 +252,14 @@ def _check_request(method: str, preset: str, options: dict[str, Any]) -> None:
     check_options(method, options)
 
 
-def _read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
+def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
+    """Read the mask of the missing bone that belongs to a scan.
+
+    Raises
+    ------
+    InputRefused
+        ``GridMismatch`` or ``EmptyMask``, or what reading refuses.
+    """
     truth, _ = read_ct(path, mask=True)
     if not same_grid(scan, truth):
         message = f"The truth has shape {truth.shape}, the scan {scan.shape}, or they stand at different places."

@@ -171,22 +171,25 @@ def plotter(scene: Scene, max_faces: int = MAX_FACES) -> Any:
     made.suppress_rendering = True
     budget = max_faces // len(scene.parts)  # faces of each part
     for part in scene.parts:
-        mesh, values = thinned(part.mesh, part.values, budget)
+        values = np.zeros(len(part.mesh.vertices)) if part.values is None else part.values
+        mesh, carried = thinned(part.mesh, np.column_stack([part.mesh.vertex_normals, values]), budget)
         surface = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces.astype(int))
-        if values is not None:
-            surface["values"] = values
-        made.add_mesh(surface, name=part.label or None, **_look(part, scene))
+        # the normals of the full mesh: those of the thinned one turn black where two of its faces fold together
+        surface.point_data.active_normals = carried[:, :3]
+        if part.values is not None:
+            surface["values"] = carried[:, 3]
+        made.add_mesh(surface, name=part.label or None, smooth_shading=True, **_look(part, scene))
     made.camera_position = _camera(scene)
     return made
 
 
-def thinned(mesh: Mesh, values: NDArray | None, max_faces: int) -> tuple[Mesh, NDArray | None]:
+def thinned(mesh: Mesh, carried: NDArray, max_faces: int) -> tuple[Mesh, NDArray[np.float64]]:
     """A mesh with at most so many faces, for the eye only: the vertices of each cell of a grid become one.
 
     Parameters
     ----------
     mesh : Mesh
-    values : ndarray, shape (V,), or None
+    carried : ndarray, shape (V, K)
         Numbers at its vertices, averaged with them.
     max_faces : int
 
@@ -195,22 +198,20 @@ def thinned(mesh: Mesh, values: NDArray | None, max_faces: int) -> tuple[Mesh, N
     Vertex clustering after Rossignac and Borrel 1993. Quadric decimation keeps shapes better, but can take a minute.
     """
     cell = np.sqrt(2 * mesh.areas.sum() / max_faces)
-    while len(mesh.faces) > max_faces:
-        _, group, sizes = np.unique(np.floor(mesh.vertices / cell), axis=0, return_inverse=True, return_counts=True)
-        group = group.ravel()
-        mean = [np.bincount(group, axis) / sizes for axis in mesh.vertices.T]
-        values = None if values is None else np.bincount(group, values) / sizes
-        faces = group[mesh.faces]
-        whole = (faces != np.roll(faces, 1, axis=1)).all(axis=1)
-        mesh = Mesh(np.column_stack(mean), faces[whole])
+    points, faces = np.column_stack([mesh.vertices, carried]), mesh.faces
+    while len(faces) > max_faces:
+        _, group, sizes = np.unique(np.floor(points[:, :3] / cell), axis=0, return_inverse=True, return_counts=True)
+        points = np.column_stack([np.bincount(group.ravel(), column) / sizes for column in points.T])
+        faces = group.ravel()[faces]
+        faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
         cell *= 1.15
-    return mesh, None if values is None else np.asarray(values, float)
+    return Mesh(points[:, :3], faces), points[:, 3:]
 
 
 def _look(part: Part, scene: Scene) -> dict[str, Any]:
     """How pyvista colours a part. Colours are floats: whole numbers come out dark."""
     if part.values is None:
-        return {"color": tuple(v / 255.0 for v in rgb_of(part.colour)), "smooth_shading": True}
+        return {"color": tuple(v / 255.0 for v in rgb_of(part.colour))}
     bar = {"title": scene.unit}
     return {"scalars": "values", "cmap": "cividis", "clim": (0.0, scene.top), "scalar_bar_args": bar}
 

@@ -81,6 +81,13 @@ def test_normals_are_unit_and_a_face_without_area_has_none():
     assert np.linalg.norm(flat.normals[1]) == pytest.approx(1)
 
 
+def test_normals_of_a_spheres_vertices_point_away_from_its_centre():
+    fine = ball(3000)
+    np.testing.assert_allclose(fine.vertex_normals, fine.vertices, atol=0.05)
+    lonely = Mesh(np.vstack([fine.vertices, [9.0, 9, 9]]), fine.faces)
+    np.testing.assert_array_equal(lonely.vertex_normals[-1], 0)
+
+
 def test_a_mesh_without_faces_holds_nothing():
     nothing = Mesh(np.empty((0, 3)), np.empty((0, 3), int))
     assert nothing.volume == 0.0

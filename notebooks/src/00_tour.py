@@ -100,7 +100,7 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 # runs along the outside of the bone, one along the inside. Here is the outer one.
 
 # %% tags=["nbval-check-output"]
-plane = (first + end) // 2
+plane = classroom.bridged_plane(bone, openings[0], skip=3, reach=10)
 seen = features.slice_features(bone.voxels[plane])
 outer, inner = features.gap_ends(seen, openings[0].opening.voxels[plane], skip=3, reach=10)
 inside = bone.to_voxel(openings[0].head_centre)[1:]

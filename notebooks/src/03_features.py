@@ -43,7 +43,7 @@ from cranio_nb.curves import ChordFrame
 case = classroom.load("class")
 bone = segment.segment(case.ct)
 opening = lesion.find(bone)[0]
-plane = sum(opening.planes) // 2
+plane = classroom.bridged_plane(bone, opening, skip=10, reach=10)
 mask, px = bone.voxels[plane], case.px
 
 # %% [markdown]

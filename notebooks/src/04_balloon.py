@@ -49,7 +49,7 @@ from cranio_nb.curves import ChordFrame, cubic, spiral
 case = classroom.load("class")
 bone = segment.segment(case.ct)
 opening = lesion.find(bone)[0]
-plane = sum(opening.planes) // 2
+plane = classroom.bridged_plane(bone, opening, skip=3, reach=10)
 inside = bone.to_voxel(opening.head_centre)[1:]
 
 # %% [markdown]

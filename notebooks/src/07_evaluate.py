@@ -33,11 +33,13 @@ from cranio_nb.run import check_truth
 # %% [markdown]
 # ## Parameters
 #
-# None to tune: an evaluation that can be tuned is none. This lesson needs a truth, so it runs on the synthetic head
-# only (*the switch:* `"tiny"`, `"class"` or `"full"`).
+# None to tune: an evaluation that can be tuned is none.
+#
+# *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, for this lesson needs
+# a truth: `classroom.load(scan="path/to/your/scan", truth="path/to/its/truth.nii.gz")`.
 
 # %%
-case = classroom.load("class")
+case = classroom.load("class", needs_truth=True)
 bone, truth = segment.segment(case.ct), case.truth
 openings = lesion.find(bone)
 made = slicewise.design(bone, openings)
