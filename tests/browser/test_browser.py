@@ -7,6 +7,7 @@ import time
 
 import numpy as np
 import pytest
+from browser_lab import write_notebook
 from PIL import Image
 
 CELLS = (
@@ -27,22 +28,6 @@ widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels
 """,
     'view3d.show(render.skull_surface(bone), colours=["#EDE7D8"], alt="A skull with a hole.", towards=one.direction)',
 )
-
-
-def write_notebook(path, cells):
-    blocks = [
-        {
-            "cell_type": "code",
-            "id": f"c{i}",
-            "metadata": {},
-            "outputs": [],
-            "execution_count": None,
-            "source": c.strip(),
-        }
-        for i, c in enumerate(cells)
-    ]
-    kernel = {"kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"}}
-    path.write_text(json.dumps({"cells": blocks, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}))
 
 
 def shot(locator):
