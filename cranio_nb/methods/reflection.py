@@ -1,0 +1,168 @@
+"""The classical reference: the skull's other side, mirrored into the hole.
+
+Bone mask in, `Prosthesis` out. The 2011 paper (doi 10.5220/0003356601370142) measures its prostheses against a
+reflection: the skull is mirrored at its symmetry plane, bone is taken off, the piece in the hole is kept.
+
+Idea. `symmetry.find` gives the plane x -> x - 2 (n (x - p)) n. The mirrored skull is the same voxels under another
+affine, so nothing is resampled: both skulls are measured along the same rays from inside the head, between voxels, on
+the lesion's chart, and the prosthesis lies between the mirrored radii, in the hole, off the bone. Where the mirror
+image has no bone either, because the defect crosses the plane or has a partner, there is nothing to copy.
+
+Faithful: mirror, subtract, keep the piece in the hole. Ours: the plane is found and not clicked, the surface is smooth
+between voxels, the edge ends with the bone's own surface, the part that cannot be copied is refused or left out. Also
+ours, and off unless asked for, is `fit_rim`: no head is symmetric, so the mirrored radii m leave a step at the rim.
+The difference d = r - m to the bone's own radii r is known around the hole; with
+
+    sum over known rays (g - d)^2 + lambda sum |laplacian g|^2 -> min
+
+it is continued across the hole as smoothly as can be, and m + g meets the rim.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, sparse
+from scipy.sparse.linalg import splu
+
+from .. import __version__, chart, fill, lesion, surface, symmetry
+from ..chart import RadialChart
+from ..errors import InputRefused
+from ..prosthesis import Lesion, Prosthesis
+from ..symmetry import SymmetryPlane
+from ..volume import Volume
+
+_TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
+_RING = 25.0  # mm of bone around the hole that the mirror image is fitted to
+_COARSE = 2.0  # mm between the points the difference is solved at: it is smooth
+_LAMBDA = 10.0
+
+
+@dataclass(frozen=True, eq=False)
+class MirroredDesign:
+    """What the method did for one lesion; for pictures and lessons.
+
+    Parameters
+    ----------
+    lesion : Lesion
+    plane : SymmetryPlane
+    own, mirrored : RadialChart
+        The skull and its mirror image along the same rays; `mirrored.hole` is where the image lacks bone.
+    outer, inner : ndarray, shape (M, M)
+        Radii of the prosthesis in mm; nan where it has none.
+    """
+
+    lesion: Lesion
+    plane: SymmetryPlane
+    own: RadialChart
+    mirrored: RadialChart
+    outer: NDArray[np.float64]
+    inner: NDArray[np.float64]
+
+    @property
+    def lost(self) -> float:
+        """Part of the hole that has no mirror image, 0 to 1."""
+        return float((self.own.hole & self.mirrored.hole).sum() / self.own.hole.sum())
+
+
+def design(
+    bone: Volume,
+    lesions: Sequence[Lesion] | None = None,
+    *,
+    partial: bool = False,
+    fit_rim: bool = False,
+    smooth: bool = True,
+    progress: Callable[[str, float], None] | None = None,
+) -> Prosthesis:
+    """Design a prosthesis by mirroring the other side of the skull.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull, planes rising to the top of the head.
+    lesions : sequence of Lesion, optional
+        Openings to close; found automatically when not given.
+    partial : bool
+        Where the other side lacks bone too, leave that part (or that whole lesion) open instead of refusing.
+    fit_rim : bool
+        Bend the mirrored surfaces smoothly to meet the bone around the hole.
+    smooth : bool
+        Surface without stairs (see `surface.extract`).
+    progress : callable, optional
+        Called with (stage, fraction done).
+
+    Returns
+    -------
+    Prosthesis
+        `record["symmetry"]` describes the plane, `record["lesions"]` what part of each hole has no mirror image.
+        `working` holds a `MirroredDesign` per lesion.
+
+    Raises
+    ------
+    NoOpening
+        When the vault is closed.
+    InputRefused
+        ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
+    """
+    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    tell = progress or (lambda stage, done: None)
+    began = time.perf_counter()
+    lesions = lesion.find(bone) if lesions is None else lesions
+    tell("symmetry", 0.1)
+    plane = symmetry.find(bone, lesions[0].head_centre)
+    made = []
+    for i, one in enumerate(lesions):
+        tell("mirroring", 0.2 + 0.6 * i / len(lesions))
+        made.append(_mirrored(bone, one, plane, fit_rim))
+    if not partial:
+        _check_whole(made)
+    patch = np.zeros(bone.shape, bool)
+    for part in made:
+        piece = chart.voxelise(part.own, part.outer, part.inner, bone) if np.isfinite(part.outer).any() else patch
+        patch = patch | fill.main_piece(piece, part.lesion.opening.voxels) if piece is not patch else patch
+    if not patch.any():
+        raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
+    tell("surface", 0.9)
+    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
+    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
+    record = {
+        "version": __version__,
+        "seconds": time.perf_counter() - began,
+        "symmetry": plane.record(),
+        "lesions": [{"lesion": i, "without_mirror_image": part.lost} for i, part in enumerate(made)],
+    }
+    return Prosthesis(mesh, sides, bone.with_voxels(patch), "reflection", options, record, tuple(made))
+
+
+def _check_whole(made: list[MirroredDesign]) -> None:
+    """Refuse lesions that have too little to copy from."""
+    short = [part for part in made if part.lost > _TOLERATED]
+    if short:
+        remedy = "Ask for the possible part (partial), or use a method that needs no symmetry."
+        raise _missing(short, "it crosses the symmetry plane or has a partner there", remedy)
+
+
+def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
+    """The refusal of lesions whose mirrored side is missing too."""
+    parts = ", ".join(f"{100 * part.lost:.0f} %" for part in made)
+    return InputRefused(
+        "MirrorMissing",
+        f"The mirrored side of the hole lacks bone too ({parts} of it; at most {100 * _TOLERATED:.0f} % is wanted):"
+        f" {why}.",
+        remedy,
+    )
+
+
+def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
+    """Radii of the mirror image across one hole."""
+    own = chart.look(bone, one)
+    image = chart.along(own, plane.mirrored(bone))
+    radii = [_copied(r, image.hole, own.hole) for r in (image.outer, image.inner)]
+    if fit_rim:
+        radii = [r + _difference(own, r - m) for r, m in zip((own.outer, own.inner), radii, strict=True)]
+    return MirroredDesign(one, plane, own, image, radii[0], radii[1])
