@@ -22,7 +22,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -40,7 +40,8 @@ from ..volume import Volume
 _TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
 _RING = 25.0  # mm of bone around the hole that the mirror image is fitted to
 _COARSE = 2.0  # mm between the points the difference is solved at: it is smooth
-_LAMBDA = 10.0
+_LAMBDA = 100.0
+_OUTLIER = 1.0  # mm: a difference larger than its surroundings by this counts half
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,8 +124,9 @@ def design(
         _check_whole(made)
     patch = np.zeros(bone.shape, bool)
     for part in made:
-        piece = chart.voxelise(part.own, part.outer, part.inner, bone) if np.isfinite(part.outer).any() else patch
-        patch = patch | fill.main_piece(piece, part.lesion.opening.voxels) if piece is not patch else patch
+        if np.isfinite(part.outer).any():
+            piece = chart.voxelise(part.own, part.outer, part.inner, bone)
+            patch |= fill.main_piece(piece, part.lesion.opening.voxels)
     if not patch.any():
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
     tell("surface", 0.9)
@@ -159,10 +161,52 @@ def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
 
 
 def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
-    """Radii of the mirror image across one hole."""
+    """Radii of the mirror image across one hole, nan where it has none to give."""
     own = chart.look(bone, one)
     image = chart.along(own, plane.mirrored(bone))
-    radii = [_copied(r, image.hole, own.hole) for r in (image.outer, image.inner)]
+    known = np.isfinite(image.outer) & ~image.hole
+    outer, inner = (_extended(r, known) for r in (image.outer, image.inner))
     if fit_rim:
-        radii = [r + _difference(own, r - m) for r, m in zip((own.outer, own.inner), radii, strict=True)]
-    return MirroredDesign(one, plane, own, image, radii[0], radii[1])
+        outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan))
+        inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan))
+    made = MirroredDesign(one, plane, own, image, outer, inner)
+    keep = own.hole if made.lost <= _TOLERATED else own.hole & ~image.hole
+    return replace(made, outer=np.where(keep, outer, np.nan), inner=np.where(keep, inner, np.nan))
+
+
+def _extended(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """A map with its unknown parts filled from the nearest known ray."""
+    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return values[tuple(nearest)]
+
+
+def _difference(own: RadialChart, difference: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What the mirror image lacks to the bone around the hole, continued smoothly across it, shape (M, M), mm."""
+    skip = max(1, round(_COARSE / own.mm))
+    away = ndimage.distance_transform_edt(~own.hole)[::skip, ::skip] * own.mm
+    area = away <= _RING
+    target = difference[::skip, ::skip]
+    known = area & (away > 0) & np.isfinite(target)
+    bend = _laplacian(area)
+    energy, data, weight = _LAMBDA * bend.T @ bend, np.where(known, target, 0.0)[area], known[area].astype(float)
+    for _ in range(5):
+        solved = splu((energy + sparse.diags_array(weight)).tocsc()).solve(weight * data)
+        weight = known[area] / (1 + ((data - solved) / _OUTLIER) ** 2)
+    coarse = np.zeros(area.shape)
+    coarse[area] = solved
+    v, u = np.indices(difference.shape) / skip
+    return ndimage.map_coordinates(_extended(coarse, area), [v, u], order=1, mode="nearest")
+
+
+def _laplacian(area: NDArray[np.bool_]) -> sparse.csr_array:
+    """Graph Laplacian of the points of a grid that lie in an area, each joined to its four neighbours there."""
+    index = np.cumsum(area).reshape(area.shape) - 1
+    pairs = [
+        np.stack([index[a][area[a] & area[b]], index[b][area[a] & area[b]]])
+        for a, b in ((np.s_[1:], np.s_[:-1]), (np.s_[:, 1:], np.s_[:, :-1]))
+    ]
+    i, j = np.concatenate(pairs, axis=1)
+    n = int(area.sum())
+    links = sparse.csr_array((np.ones(len(i)), (i, j)), shape=(n, n))
+    links = links + links.T
+    return (sparse.diags_array(links.sum(axis=1)) - links).tocsr()
