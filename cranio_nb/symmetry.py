@@ -36,7 +36,7 @@ _YAWS, _ROLLS = np.radians(np.arange(-36, 37, 6)), np.radians(np.arange(-24, 25,
 _FARTHEST = 6.0  # mm: a pair further apart counts as no pair when starts are compared
 _CUT = 4.685 * 1.4826  # Tukey's constant for residuals in units of their median
 _LEAST_CUT = 0.5  # mm
-_TOL, _MAX_STEPS = 1e-4, 60
+_TOL, _MAX_STEPS = 5e-3, 60  # mm, and 100 mm times radians; far below what a skull's own asymmetry leaves open
 _LEAST_PAIRS = 0.25  # part of the sky's rays that must have a partner
 
 

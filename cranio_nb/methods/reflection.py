@@ -10,7 +10,7 @@ image has no bone either, because the defect crosses the plane or has a partner,
 
 Faithful: mirror, subtract, keep the piece in the hole. Ours: the plane is found and not clicked, the surface is smooth
 between voxels, the edge ends with the bone's own surface, the part that cannot be copied is refused or left out. Also
-ours, and off unless asked for, is `fit_rim`: no head is symmetric, so the mirrored radii m leave a step at the rim.
+ours is `fit_rim`, which `paper_options` turn off: no head is symmetric, so the mirrored radii m leave a step at the rim.
 The difference d = r - m to the bone's own radii r is known around the hole; with
 
     sum over known rays (g - d)^2 + lambda sum |laplacian g|^2 -> min
@@ -38,9 +38,9 @@ from ..symmetry import SymmetryPlane
 from ..volume import Volume
 
 _TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
-_RING = 25.0  # mm of bone around the hole that the mirror image is fitted to
+_RING = 15.0  # mm of bone around the hole that the mirror image is fitted to
 _COARSE = 2.0  # mm between the points the difference is solved at: it is smooth
-_LAMBDA = 100.0
+_LAMBDA = 3.0
 _OUTLIER = 1.0  # mm: a difference larger than its surroundings by this counts half
 
 
@@ -71,12 +71,17 @@ class MirroredDesign:
         return float((self.own.hole & self.mirrored.hole).sum() / self.own.hole.sum())
 
 
+def paper_options(bone: Volume) -> dict[str, Any]:
+    """Options of `design` as the paper uses its reflection: mirrored, and not bent."""
+    return {"fit_rim": False}
+
+
 def design(
     bone: Volume,
     lesions: Sequence[Lesion] | None = None,
     *,
     partial: bool = False,
-    fit_rim: bool = False,
+    fit_rim: bool = True,
     smooth: bool = True,
     progress: Callable[[str, float], None] | None = None,
 ) -> Prosthesis:
