@@ -13,9 +13,10 @@ between voxels, the edge ends with the bone's own surface, the part that cannot 
 ours is `fit_rim`, which `paper_options` turn off: no head is symmetric, so the mirrored radii m leave a step at the rim.
 The difference d = r - m to the bone's own radii r is known around the hole; with
 
-    sum over known rays (g - d)^2 + lambda sum |laplacian g|^2 -> min
+    sum over known rays (g - d)^2 + h^4 sum (laplacian g)^2 + h^4 / l^2 sum |grad g|^2 -> min
 
-it is continued across the hole as smoothly as can be, and m + g meets the rim.
+(h = 2 mm, l = 10 mm) it is continued across the hole like a plate under tension: with its slope at first, which the
+tension takes away further in than l, where the rim knows nothing any more; and m + g meets the rim.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ from ..volume import Volume
 _TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
 _RING = 15.0  # mm of bone around the hole that the mirror image is fitted to
 _COARSE = 2.0  # mm between the points the difference is solved at: it is smooth
-_LAMBDA = 3.0
+_TENSION = 10.0  # mm over which the slope of the difference at the rim goes on into the hole
 _OUTLIER = 1.0  # mm: a difference larger than its surroundings by this counts half
 
 
@@ -130,8 +131,7 @@ def design(
     patch = np.zeros(bone.shape, bool)
     for part in made:
         if np.isfinite(part.outer).any():
-            piece = chart.voxelise(part.own, part.outer, part.inner, bone)
-            patch |= fill.main_piece(piece, part.lesion.opening.voxels)
+            patch |= _piece(part, bone)
     if not patch.any():
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
     tell("surface", 0.9)
@@ -179,6 +179,15 @@ def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) ->
     return replace(made, outer=np.where(keep, outer, np.nan), inner=np.where(keep, inner, np.nan))
 
 
+def _piece(part: MirroredDesign, bone: Volume) -> NDArray[np.bool_]:
+    """Voxels of the prosthesis of one hole: in one piece, without enclosed pores."""
+    piece = chart.voxelise(part.own, part.outer, part.inner, bone)
+    for box in ndimage.find_objects(piece.view(np.uint8)):
+        main = fill.main_piece(piece[box], part.lesion.opening.voxels[box])
+        piece[box] = ndimage.binary_fill_holes(main) & ~bone.voxels[box]
+    return piece
+
+
 def _extended(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
     """A map with its unknown parts filled from the nearest known ray."""
     nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
@@ -193,7 +202,8 @@ def _difference(own: RadialChart, difference: NDArray[np.float64]) -> NDArray[np
     target = difference[::skip, ::skip]
     known = area & (away > 0) & np.isfinite(target)
     bend = _laplacian(area)
-    energy, data, weight = _LAMBDA * bend.T @ bend, np.where(known, target, 0.0)[area], known[area].astype(float)
+    energy = bend @ bend + (skip * own.mm / _TENSION) ** 2 * bend
+    data, weight = np.where(known, target, 0.0)[area], known[area].astype(float)
     for _ in range(5):
         solved = splu((energy + sparse.diags_array(weight)).tocsc()).solve(weight * data)
         weight = known[area] / (1 + ((data - solved) / _OUTLIER) ** 2)
