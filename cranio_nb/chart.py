@@ -9,7 +9,7 @@ a pair of radii per direction. Distances on it are true along lines through its 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,10 +92,35 @@ def look(bone: Volume, lesion: Lesion) -> RadialChart:
     blank = np.full((2 * half + 1,) * 2, np.nan)
     chart = RadialChart(lesion.head_centre, axes, step, blank, blank, np.zeros(blank.shape, bool))
     opening, level = _opening_on(chart, points)
-    expected = _expected_radius(bone, chart, opening, level)
+    expected = _expected_radius(bone, chart, opening, level, hidden=opening)
     inner, outer = _cast(bone, chart, expected)
     chart = RadialChart(lesion.head_centre, axes, step, outer, inner, opening)
     return RadialChart(lesion.head_centre, axes, step, outer, inner, _missing(chart))
+
+
+def along(chart: RadialChart, bone: Volume, *, least: float = 4.0) -> RadialChart:
+    """Measure another skull, or the same one elsewhere, along the rays of a chart.
+
+    Parameters
+    ----------
+    chart : RadialChart
+        Of a lesion in the first skull.
+    bone : Volume
+        Bool mask of the other skull.
+    least : float
+        mm across: narrower places without bone are its pinholes.
+
+    Returns
+    -------
+    RadialChart
+        The same rays with the other skull's radii; its `hole` is where that skull lacks bone.
+    """
+    level = float(np.nanmedian(chart.outer))
+    expected = _expected_radius(bone, chart, chart.hole, level, hidden=np.zeros_like(chart.hole))
+    inner, outer = _cast(bone, chart, expected)
+    lacking = ndimage.binary_opening(np.isnan(outer), iterations=max(1, round(least / 2 / chart.mm)))
+    other = RadialChart(chart.eye, chart.axes, chart.step, outer, inner, lacking)
+    return replace(other, hole=_missing(other)) if lacking.any() else other
 
 
 def voxelise(
@@ -198,17 +223,22 @@ def _opening_on(chart: RadialChart, points: NDArray) -> tuple[NDArray[np.bool_],
     return ndimage.binary_closing(opening, iterations=2), float(np.median(np.linalg.norm(points, axis=1)))
 
 
-def _expected_radius(bone: Volume, chart: RadialChart, opening: NDArray, level: float) -> NDArray[np.float64]:
-    """Where the outer surface is to be expected: a smooth robust fit to the outermost bone of a coarse look."""
+def _expected_radius(
+    bone: Volume, chart: RadialChart, middle: NDArray, level: float, *, hidden: NDArray
+) -> NDArray[np.float64]:
+    """Where the outer surface is to be expected: a smooth robust fit to the outermost bone of a coarse look.
+
+    What lies near the directions in `middle` counts most, what is `hidden` not at all.
+    """
     skip = 4
     directions = chart.directions[::skip, ::skip]
     lengths = np.arange(level - 35, level + 30, 1.0)
     bone_at = _sample(bone, chart.eye, directions, lengths)
     last = bone_at.shape[-1] - 1 - bone_at[..., ::-1].argmax(axis=-1)
     outermost = np.where(bone_at.any(axis=-1), lengths[last], np.nan)
-    outermost[opening[::skip, ::skip]] = np.nan
+    outermost[hidden[::skip, ::skip]] = np.nan
     v, u = np.indices(chart.outer.shape) / (len(chart.outer) - 1) * 2 - 1
-    near = ndimage.distance_transform_edt(~opening)[::skip, ::skip] * _STEP
+    near = ndimage.distance_transform_edt(~middle)[::skip, ::skip] * _STEP
     weight = np.exp(-((near / 25.0) ** 2))
     return _robust_surface(v[::skip, ::skip], u[::skip, ::skip], outermost, weight)(v, u)
 

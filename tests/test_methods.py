@@ -14,7 +14,7 @@ from cranio_nb import evaluate
 from cranio_nb.errors import NoOpening
 from cranio_nb.lesion import find
 from cranio_nb.mesh_check import check_mesh
-from cranio_nb.methods import slicewise
+from cranio_nb.methods import hull, reflection, slicewise
 from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
 from cranio_nb.volume import Volume, same_grid
 from data_synth import phantom_case, scan
@@ -52,6 +52,16 @@ METHODS = {
         stray=50.0,
         nested=0.6,
         improves=False,
+    ),
+    # a flat lid: the error is its sag, which finer voxels do not lessen; a wider hole's lid sags below a narrow one's
+    "hull": Method(hull.design, lambda bone: {}, (0.91, 0.71, 0.76), mirror=0.95, improves=False, nested=0.5),
+    "hull by slices": Method(
+        hull.design, hull.paper_options, (0.65, 0.69, 0.67), mirror=0.95, stray=6.0, improves=False, nested=0.5
+    ),
+    "reflection": Method(reflection.design, lambda bone: {}, (0.94, 0.91, 0.92), mirror=0.95),
+    # no head is symmetric, and finer voxels do not make it so
+    "reflection as it is": Method(
+        reflection.design, reflection.paper_options, (0.92, 0.88, 0.90), mirror=0.95, improves=False
     ),
 }
 

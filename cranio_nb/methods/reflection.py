@@ -1,0 +1,227 @@
+"""The classical reference: the skull's other side, mirrored into the hole.
+
+Bone mask in, `Prosthesis` out. The 2011 paper (doi 10.5220/0003356601370142) measures its prostheses against a
+reflection: the skull is mirrored at its symmetry plane, bone is taken off, the piece in the hole is kept.
+
+Idea. `symmetry.find` gives the plane x -> x - 2 (n (x - p)) n. The mirrored skull is the same voxels under another
+affine, so nothing is resampled: both skulls are measured along the same rays from inside the head, between voxels, on
+the lesion's chart, and the prosthesis lies between the mirrored radii, in the hole, off the bone. Where the mirror
+image has no bone either, because the defect crosses the plane or has a partner, there is nothing to copy.
+
+Faithful: mirror, subtract, keep the piece in the hole. Ours: the plane is found and not clicked, the surface is smooth
+between voxels, the edge ends with the bone's own surface, the part that cannot be copied is refused or left out. Also
+ours is `fit_rim`, which `paper_options` turn off: no head is symmetric, so the mirrored radii m leave a step at the rim.
+The difference d = r - m to the bone's own radii r is known around the hole; with
+
+    sum over known rays (g - d)^2 + h^4 sum (laplacian g)^2 + h^4 / l^2 sum |grad g|^2 -> min
+
+(h = 2 mm, l = 10 mm) it is continued across the hole like a plate under tension: with its slope at first, which the
+tension takes away further in than l, where the rim knows nothing any more; and m + g meets the rim.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, sparse
+from scipy.sparse.linalg import splu
+
+from .. import __version__, chart, fill, lesion, surface, symmetry
+from ..chart import RadialChart
+from ..errors import InputRefused
+from ..prosthesis import Lesion, Prosthesis
+from ..symmetry import SymmetryPlane
+from ..volume import Volume
+
+_TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
+_RING = 15.0  # mm of bone around the hole that the mirror image is fitted to
+_COARSE = 2.0  # mm between the points the difference is solved at: it is smooth
+_TENSION = 10.0  # mm over which the slope of the difference at the rim goes on into the hole
+_OUTLIER = 1.0  # mm: a difference larger than its surroundings by this counts half
+
+
+@dataclass(frozen=True, eq=False)
+class MirroredDesign:
+    """What the method did for one lesion; for pictures and lessons.
+
+    Parameters
+    ----------
+    lesion : Lesion
+    plane : SymmetryPlane
+    own, mirrored : RadialChart
+        The skull and its mirror image along the same rays; `mirrored.hole` is where the image lacks bone.
+    outer, inner : ndarray, shape (M, M)
+        Radii of the prosthesis in mm; nan where it has none.
+    """
+
+    lesion: Lesion
+    plane: SymmetryPlane
+    own: RadialChart
+    mirrored: RadialChart
+    outer: NDArray[np.float64]
+    inner: NDArray[np.float64]
+
+    @property
+    def lost(self) -> float:
+        """Part of the hole that has no mirror image, 0 to 1."""
+        return float((self.own.hole & self.mirrored.hole).sum() / self.own.hole.sum())
+
+
+def paper_options(bone: Volume) -> dict[str, Any]:
+    """Options of `design` as the paper uses its reflection: mirrored, and not bent."""
+    return {"fit_rim": False}
+
+
+def design(
+    bone: Volume,
+    lesions: Sequence[Lesion] | None = None,
+    *,
+    partial: bool = False,
+    fit_rim: bool = True,
+    smooth: bool = True,
+    progress: Callable[[str, float], None] | None = None,
+) -> Prosthesis:
+    """Design a prosthesis by mirroring the other side of the skull.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull, planes rising to the top of the head.
+    lesions : sequence of Lesion, optional
+        Openings to close; found automatically when not given.
+    partial : bool
+        Where the other side lacks bone too, leave that part (or that whole lesion) open instead of refusing.
+    fit_rim : bool
+        Bend the mirrored surfaces smoothly to meet the bone around the hole.
+    smooth : bool
+        Surface without stairs (see `surface.extract`).
+    progress : callable, optional
+        Called with (stage, fraction done).
+
+    Returns
+    -------
+    Prosthesis
+        `record["symmetry"]` describes the plane, `record["lesions"]` what part of each hole has no mirror image.
+        `working` holds a `MirroredDesign` per lesion.
+
+    Raises
+    ------
+    NoOpening
+        When the vault is closed.
+    InputRefused
+        ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
+    """
+    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    tell = progress or (lambda stage, done: None)
+    began = time.perf_counter()
+    lesions = lesion.find(bone) if lesions is None else lesions
+    tell("symmetry", 0.1)
+    plane = symmetry.find(bone, lesions[0].head_centre)
+    made = []
+    for i, one in enumerate(lesions):
+        tell("mirroring", 0.2 + 0.6 * i / len(lesions))
+        made.append(_mirrored(bone, one, plane, fit_rim))
+    if not partial:
+        _check_whole(made)
+    patch = np.zeros(bone.shape, bool)
+    for part in made:
+        if np.isfinite(part.outer).any():
+            patch |= _piece(part, bone)
+    if not patch.any():
+        raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
+    tell("surface", 0.9)
+    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
+    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
+    record = {
+        "version": __version__,
+        "seconds": time.perf_counter() - began,
+        "symmetry": plane.record(),
+        "lesions": [{"lesion": i, "without_mirror_image": part.lost} for i, part in enumerate(made)],
+    }
+    return Prosthesis(mesh, sides, bone.with_voxels(patch), "reflection", options, record, tuple(made))
+
+
+def _check_whole(made: list[MirroredDesign]) -> None:
+    """Refuse lesions that have too little to copy from."""
+    short = [part for part in made if part.lost > _TOLERATED]
+    if short:
+        remedy = "Ask for the possible part (partial), or use a method that needs no symmetry."
+        raise _missing(short, "it crosses the symmetry plane or has a partner there", remedy)
+
+
+def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
+    """The refusal of lesions whose mirrored side is missing too."""
+    parts = ", ".join(f"{100 * part.lost:.0f} %" for part in made)
+    return InputRefused(
+        "MirrorMissing",
+        f"The mirrored side of the hole lacks bone too ({parts} of it; at most {100 * _TOLERATED:.0f} % is wanted):"
+        f" {why}.",
+        remedy,
+    )
+
+
+def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
+    """Radii of the mirror image across one hole, nan where it has none to give."""
+    own = chart.look(bone, one)
+    image = chart.along(own, plane.mirrored(bone))
+    known = np.isfinite(image.outer) & ~image.hole
+    outer, inner = (_extended(r, known) for r in (image.outer, image.inner))
+    if fit_rim:
+        outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan))
+        inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan))
+    made = MirroredDesign(one, plane, own, image, outer, inner)
+    keep = own.hole if made.lost <= _TOLERATED else own.hole & ~image.hole
+    return replace(made, outer=np.where(keep, outer, np.nan), inner=np.where(keep, inner, np.nan))
+
+
+def _piece(part: MirroredDesign, bone: Volume) -> NDArray[np.bool_]:
+    """Voxels of the prosthesis of one hole: in one piece, without enclosed pores."""
+    piece = chart.voxelise(part.own, part.outer, part.inner, bone)
+    for box in ndimage.find_objects(piece.view(np.uint8)):
+        main = fill.main_piece(piece[box], part.lesion.opening.voxels[box])
+        piece[box] = ndimage.binary_fill_holes(main) & ~bone.voxels[box]
+    return piece
+
+
+def _extended(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """A map with its unknown parts filled from the nearest known ray."""
+    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
+    return values[tuple(nearest)]
+
+
+def _difference(own: RadialChart, difference: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What the mirror image lacks to the bone around the hole, continued smoothly across it, shape (M, M), mm."""
+    skip = max(1, round(_COARSE / own.mm))
+    away = ndimage.distance_transform_edt(~own.hole)[::skip, ::skip] * own.mm
+    area = away <= _RING
+    target = difference[::skip, ::skip]
+    known = area & (away > 0) & np.isfinite(target)
+    bend = _laplacian(area)
+    energy = bend @ bend + (skip * own.mm / _TENSION) ** 2 * bend
+    data, weight = np.where(known, target, 0.0)[area], known[area].astype(float)
+    for _ in range(5):
+        solved = splu((energy + sparse.diags_array(weight)).tocsc()).solve(weight * data)
+        weight = known[area] / (1 + ((data - solved) / _OUTLIER) ** 2)
+    coarse = np.zeros(area.shape)
+    coarse[area] = solved
+    v, u = np.indices(difference.shape) / skip
+    return ndimage.map_coordinates(_extended(coarse, area), [v, u], order=1, mode="nearest")
+
+
+def _laplacian(area: NDArray[np.bool_]) -> sparse.csr_array:
+    """Graph Laplacian of the points of a grid that lie in an area, each joined to its four neighbours there."""
+    index = np.cumsum(area).reshape(area.shape) - 1
+    pairs = [
+        np.stack([index[a][area[a] & area[b]], index[b][area[a] & area[b]]])
+        for a, b in ((np.s_[1:], np.s_[:-1]), (np.s_[:, 1:], np.s_[:, :-1]))
+    ]
+    i, j = np.concatenate(pairs, axis=1)
+    n = int(area.sum())
+    links = sparse.csr_array((np.ones(len(i)), (i, j)), shape=(n, n))
+    links = links + links.T
+    return (sparse.diags_array(links.sum(axis=1)) - links).tocsr()
