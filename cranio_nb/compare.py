@@ -82,6 +82,8 @@ class Comparison:
         For each trial its values of `MEASURES`; nan where there is none.
     reference : str
         "truth", or the name of the first contender that made a prosthesis; empty if none did.
+    true : Prosthesis or None
+        The missing bone, where it is known.
     distances : dict
         Name of each contender but the reference -> side ("outer", "inner") -> distance in mm of each node of that
         side to the reference's, shape (nodes,).
@@ -93,6 +95,7 @@ class Comparison:
     trials: tuple[Trial, ...]
     rows: tuple[dict[str, float], ...]
     reference: str
+    true: Prosthesis | None
     distances: dict[str, dict[str, NDArray[np.float64]]]
     pairs: dict[tuple[str, str], tuple[float, float]]
 
@@ -139,11 +142,11 @@ def compare(
     reference = "truth" if true is not None else next(iter(made), "")
     base = true or made.get(reference)
     distances = {name: surface_distances(p, base) for name, p in made.items() if base and p is not base}
-    return Comparison(case, tuple(trials), tuple(rows), reference, distances, agreement(made))
+    return Comparison(case, tuple(trials), tuple(rows), reference, true, distances, agreement(made))
 
 
 def measure(trial: Trial, bone: Volume, true: Prosthesis | None = None) -> dict[str, float]:
-    """Values of the `MEASURES` of a trial; nan where there is none.
+    """Values of the `MEASURES` of a trial; nan where there is none, and all of them nan unless it was done.
 
     Parameters
     ----------
@@ -153,10 +156,11 @@ def measure(trial: Trial, bone: Volume, true: Prosthesis | None = None) -> dict[
     true : Prosthesis, optional
         The missing bone, from `truth.true_prosthesis`.
     """
-    found = dict.fromkeys(MEASURES, _UNKNOWN) | {"seconds": trial.seconds, "memory": trial.memory}
+    found = dict.fromkeys(MEASURES, _UNKNOWN)
     made = trial.prosthesis
     if made is None or made.patch is None:
         return found
+    found |= {"seconds": trial.seconds, "memory": trial.memory}
     if true is not None:
         found |= _accuracy(made, true, bone)
     gap = rim_gap(made.surface(RIM), bone) if (made.sides == RIM).any() else None
