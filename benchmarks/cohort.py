@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import csv
 import hashlib
-import inspect
 import json
 import os
 import subprocess
@@ -25,13 +24,12 @@ from typing import Any
 import numpy as np
 
 from cranio_nb import __version__
-from cranio_nb.catalogue import METHODS, method_module
-from cranio_nb.compare import MEASURES, measure
+from cranio_nb.catalogue import METHODS, check_options, default_options
+from cranio_nb.compare import MEASURES, Reference, measure
 from cranio_nb.errors import CranioError
 from cranio_nb.lesion import find
 from cranio_nb.segment import segment
 from cranio_nb.trial import Attempt, Contender, attempt_apart, contenders
-from cranio_nb.truth import true_prosthesis
 from cranio_nb.volume import Volume
 
 KEY = ("case", "contender", "options", "version")
@@ -116,7 +114,7 @@ def _work(case: Case, left: Sequence[Contender], path: Path, head: Sequence[str]
         bone, truth = case.load(*case.arguments)
         bone = segment(bone)
         lesions = find(bone)
-        true = true_prosthesis(truth, bone, lesions[0])
+        reference = Reference.of(truth, bone, lesions[0])
     except ValueError as error:
         code = error.code if isinstance(error, CranioError) else "NoCase"
         for contender in left:
@@ -125,7 +123,7 @@ def _work(case: Case, left: Sequence[Contender], path: Path, head: Sequence[str]
     for contender in left:
         trial = attempt(bone, lesions, contender)
         outcome = {"status": trial.status, "code": trial.code, "message": trial.message}
-        _append(path, head, case, contender, outcome | measure(trial, bone, true))
+        _append(path, head, case, contender, outcome | measure(trial, bone, reference))
 
 
 def _append(path: Path, head: Sequence[str], case: Case, contender: Contender, outcome: dict[str, Any]) -> None:
@@ -232,12 +230,19 @@ def add_arguments(parser: argparse.ArgumentParser, out: str) -> None:
 
 
 def contenders_of(asked: argparse.Namespace) -> list[Contender]:
-    """The contenders asked for; each gets the options that it has."""
-    given = asked.options | ({"prior": asked.prior} if asked.prior else {})
+    """The contenders asked for; each gets those of the options that it has, and one that nobody has is refused."""
+    rivals = contenders(asked.methods)
+    known = {one.method: default_options(one.method) for one in rivals}
+    strangers = set(asked.options) - {option for options in known.values() for option in options}
+    if strangers:
+        raise SystemExit(f"None of these methods has an option {', '.join(sorted(strangers))}.")
     found = []
-    for one in contenders(asked.methods):
-        known = inspect.signature(method_module(one.method).design).parameters
-        found.append(replace(one, options={k: v for k, v in given.items() if k in known}))
+    for one in rivals:
+        options = {k: v for k, v in asked.options.items() if k in known[one.method]}
+        check_options(one.method, options)
+        if asked.prior and "prior" in known[one.method]:
+            options["prior"] = asked.prior
+        found.append(replace(one, options=options))
     return found
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from .catalogue import METHODS
-from .errors import InputRefused
+from .errors import InputRefused, NoOpening
 from .readers import ALLOWANCES
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def compare(
     r"""Let several methods close the same hole, and set them side by side.
 
     The scan is read and segmented once; each method runs in a process of its own. A method that refuses is a row with
-    its reason. Without --out the table is printed and nothing is written.
+    its reason; where none makes anything the exit code is 4. Without --out the table is printed and nothing is written.
 
     \b
     Examples:
@@ -51,7 +51,6 @@ def compare(
       cranio-nb compare skull.nii.gz --mask --method slicewise --method slicewise:paper
     """
     from .compare import compare as run_all
-    from .compare import refuse_if_none
     from .compare_page import FILES, write_comparison
     from .console import progress_bar
     from .outputs import check_folder, staged
@@ -69,12 +68,13 @@ def compare(
     with progress_bar() as tell:
         case = prepare(scan, mask=mask or None, threshold=threshold, truth=truth, allow=allow, progress=tell)
         found = run_all(case, asked, progress=lambda name, done: tell(name, 0.4 + 0.5 * done))
-        refuse_if_none(found)
         if out is not None:
             tell("report", 0.92)
             with staged(out) as part:
                 write_comparison(found, part)
     _print(found, out)
+    if not found.made:
+        raise click.exceptions.Exit(NoOpening.exit_code)
 
 
 def _print(found: Comparison, out: Path | None) -> None:

@@ -14,15 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import evaluate
-from .errors import CranioError, NoOpening
 from .fit import rim_gap
-from .prosthesis import INNER, OUTER, RIM, Prosthesis
+from .prosthesis import INNER, OUTER, RIM, Lesion, Prosthesis
 from .run import Prepared
 from .trial import Attempt, Contender, Trial, attempt_apart
-from .truth import against, true_prosthesis
+from .truth import side_distances, table3, true_prosthesis
 from .volume import Volume
 
-SIDES = {"outer": OUTER, "inner": INNER}
 _UNKNOWN = float("nan")
 
 
@@ -67,6 +65,28 @@ MEASURES = {
     "memory": Measure("Peak memory", "MB", 0, "low"),
 }
 """Every column by its name in files: accuracy against a truth, the implant itself, its cost (`Trial`)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """The missing bone, prepared once for many measurements.
+
+    Parameters
+    ----------
+    prosthesis : Prosthesis
+        With its mesh and sides.
+    thickness : ndarray, shape (nodes of the outer side,)
+        mm; empty where a side is missing.
+    """
+
+    prosthesis: Prosthesis
+    thickness: NDArray[np.float64]
+
+    @classmethod
+    def of(cls, truth: Volume, bone: Volume, largest: Lesion) -> Reference:
+        """From the mask of the missing bone, the skull with the hole and its largest opening."""
+        true = true_prosthesis(truth, bone, largest)
+        return cls(true, _thickness(true))
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,20 +152,21 @@ def compare(
         Called with (name of the contender, fraction done).
     """
     tell = progress or (lambda step, done: None)
-    true = None if case.truth is None else true_prosthesis(case.truth, case.bone, case.lesions[0])
+    truth = None if case.truth is None else Reference.of(case.truth, case.bone, case.lesions[0])
     trials, rows = [], []
     for i, contender in enumerate(contenders):
         tell(contender.name, i / len(contenders))
         trials.append(attempt(case.bone, case.lesions, contender))
-        rows.append(measure(trials[-1], case.bone, true))
+        rows.append(measure(trials[-1], case.bone, truth))
     made = {t.contender.name: t.prosthesis for t in trials if t.prosthesis is not None}
+    true = None if truth is None else truth.prosthesis
     reference = "truth" if true is not None else next(iter(made), "")
     base = true or made.get(reference)
-    distances = {name: surface_distances(p, base) for name, p in made.items() if base and p is not base}
+    distances = {name: side_distances(p, base) for name, p in made.items() if base and p is not base}
     return Comparison(case, tuple(trials), tuple(rows), reference, true, distances, agreement(made))
 
 
-def measure(trial: Trial, bone: Volume, true: Prosthesis | None = None) -> dict[str, float]:
+def measure(trial: Trial, bone: Volume, truth: Reference | None = None) -> dict[str, float]:
     """Values of the `MEASURES` of a trial; nan where there is none, and all of them nan unless it was done.
 
     Parameters
@@ -153,49 +174,48 @@ def measure(trial: Trial, bone: Volume, true: Prosthesis | None = None) -> dict[
     trial : Trial
     bone : Volume
         The skull it was given.
-    true : Prosthesis, optional
-        The missing bone, from `truth.true_prosthesis`.
+    truth : Reference, optional
+        The missing bone.
     """
     found = dict.fromkeys(MEASURES, _UNKNOWN)
     made = trial.prosthesis
     if made is None or made.patch is None:
         return found
-    found |= {"seconds": trial.seconds, "memory": trial.memory}
-    if true is not None:
-        found |= _accuracy(made, true, bone)
     gap = rim_gap(made.surface(RIM), bone) if (made.sides == RIM).any() else None
-    return found | {
+    walls = _thickness(made)
+    found |= {
         "volume": made.mesh.volume / 1000,
-        "thickness": float(evaluate.thickness(made).mean()) if _has_sides(made) else _UNKNOWN,
+        "thickness": float(walls.mean()) if len(walls) else _UNKNOWN,
         "rim_gap": gap.mean if gap else _UNKNOWN,
         "rim_gap_p95": gap.p95 if gap else _UNKNOWN,
         "overlap": evaluate.overlap(made.patch, bone),
+        "seconds": trial.seconds,
+        "memory": trial.memory,
     }
+    return found if truth is None else found | _accuracy(made, walls, truth, bone)
 
 
-def _accuracy(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, float]:
-    check = against(made, true, bone)
-    score = check.score
+def _accuracy(made: Prosthesis, walls: NDArray[np.float64], truth: Reference, bone: Volume) -> dict[str, float]:
+    true = truth.prosthesis
+    if made.patch is None or true.patch is None:
+        return {}
+    score, rows = evaluate.score(made.patch, true.patch, bone), table3(made, true, bone)
+    walled = len(walls) and len(truth.thickness)
     return {
         "dice": score.dice,
         "border_dice": score.border_dice,
         "hd95": score.hd95,
         "assd": score.assd,
         "volume_ratio": score.volume_ratio,
-        "thickness_rmse": evaluate.thickness_rmse(made, true) if _has_sides(made) and _has_sides(true) else _UNKNOWN,
-        "top_mean": check.table3["outer"].mean if "outer" in check.table3 else _UNKNOWN,
-        "inner_mean": check.table3["inner"].mean if "inner" in check.table3 else _UNKNOWN,
+        "thickness_rmse": evaluate.thickness_error(made, walls, true, truth.thickness) if walled else _UNKNOWN,
+        "top_mean": rows["outer"].mean if "outer" in rows else _UNKNOWN,
+        "inner_mean": rows["inner"].mean if "inner" in rows else _UNKNOWN,
     }
 
 
-def surface_distances(made: Prosthesis, reference: Prosthesis) -> dict[str, NDArray[np.float64]]:
-    """Side -> distance in mm of each of its nodes to the same side of a reference; sides that both have."""
-    found = {}
-    for name, side in SIDES.items():
-        own, other = made.surface(side), reference.surface(side)
-        if len(own.faces) and len(other.faces):
-            found[name] = evaluate.surface_distance(own.vertices, other)
-    return found
+def _thickness(made: Prosthesis) -> NDArray[np.float64]:
+    """Its `evaluate.thickness`; empty where a side is missing."""
+    return evaluate.thickness(made) if (made.sides == OUTER).any() and (made.sides == INNER).any() else np.empty(0)
 
 
 def agreement(made: dict[str, Prosthesis]) -> dict[tuple[str, str], tuple[float, float]]:
@@ -205,10 +225,6 @@ def agreement(made: dict[str, Prosthesis]) -> dict[tuple[str, str], tuple[float,
         (a, b): (evaluate.dice(patches[a], patches[b]), evaluate.assd(patches[a], patches[b]))
         for a, b in combinations(patches, 2)
     }
-
-
-def _has_sides(made: Prosthesis) -> bool:
-    return bool((made.sides == OUTER).any() and (made.sides == INNER).any())
 
 
 def records(comparison: Comparison) -> list[dict[str, Any]]:
@@ -226,18 +242,3 @@ def records(comparison: Comparison) -> list[dict[str, Any]]:
         }
         for trial, row in zip(comparison.trials, comparison.rows, strict=True)
     ]
-
-
-def refuse_if_none(comparison: Comparison) -> None:
-    """Raise what every contender ran into, where none of them made anything.
-
-    Raises
-    ------
-    NoOpening, CranioError
-        The first contender's fault.
-    """
-    if comparison.made:
-        return
-    first = comparison.trials[0]
-    kind = NoOpening if first.status == "no patch" else CranioError
-    raise kind(first.code, first.message)

@@ -15,12 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import __version__, export, plot
-from .compare import MEASURES, SIDES, Comparison, records
+from .compare import MEASURES, Comparison, records
 from .mesh import Mesh
 from .outputs import load_record, versions
 from .render import skull_surface, view_axes
 from .report import Shot, floor, page_template, shot
 from .tables import Opening, measure_opening
+from .truth import SIDES
 
 FILES = ("comparison.csv", "comparison.json", "comparison.html")
 """What a comparison leaves in its folder."""
@@ -76,8 +77,8 @@ def comparison_page(comparison: Comparison) -> str:
         bone=plot.BONE,
         tables=tables(comparison),
         measures=MEASURES,
-        views=view_shots(comparison, openings),
-        cuts=cut_shots(comparison),
+        views=view_shots(comparison, openings) if comparison.made else {},
+        cuts=cut_shots(comparison) if comparison.made else [],
         maps=distance_shots(comparison),
         bar=_bar(comparison) if comparison.distances else None,
         against=_against(comparison),

@@ -13,8 +13,12 @@ from numpy.typing import NDArray
 from . import evaluate, surface
 from .errors import InputRefused
 from .evaluate import Score
+from .mesh import Mesh
 from .prosthesis import INNER, OUTER, DistanceStats, Lesion, Prosthesis
 from .volume import Volume
+
+SIDES = {"outer": OUTER, "inner": INNER}
+"""The sides that are measured, by name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,12 +70,27 @@ def against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCheck:
     """Measure a design against another prosthesis with a patch on the same grid; see `check_truth`."""
     if made.patch is None or true.patch is None:
         raise InputRefused("NoPatch", f"The method {made.method} makes no voxels to compare with a mask.")
-    distances, table3 = {}, {}
-    for name, side in (("outer", OUTER), ("inner", INNER)):
-        own, other = made.surface(side), true.surface(side)
-        if not len(own.faces) or not len(other.faces):
-            continue
-        distances[name] = evaluate.surface_distance(own.vertices, other)
+    score = evaluate.score(made.patch, true.patch, bone)
+    return TruthCheck(true, score, side_distances(made, true), table3(made, true, bone))
+
+
+def side_distances(made: Prosthesis, true: Prosthesis) -> dict[str, NDArray[np.float64]]:
+    """Side ("outer", "inner") -> distance in mm of each of its nodes to the true side, shape (nodes,).
+
+    Only sides that both have.
+    """
+    return {name: evaluate.surface_distance(own.vertices, other) for name, own, other in _both_sides(made, true)}
+
+
+def table3(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, DistanceStats]:
+    """Side -> a row of the paper's Table 3, in voxels of the bone's grid."""
+    found = {}
+    for name, own, other in _both_sides(made, true):
         nodes = evaluate.in_voxels(own, bone).vertices
-        table3[name] = evaluate.distance_stats(evaluate.surface_distance(nodes, evaluate.in_voxels(other, bone)))
-    return TruthCheck(true, evaluate.score(made.patch, true.patch, bone), distances, table3)
+        found[name] = evaluate.distance_stats(evaluate.surface_distance(nodes, evaluate.in_voxels(other, bone)))
+    return found
+
+
+def _both_sides(made: Prosthesis, true: Prosthesis) -> list[tuple[str, Mesh, Mesh]]:
+    sides = [(name, made.surface(side), true.surface(side)) for name, side in SIDES.items()]
+    return [(name, own, other) for name, own, other in sides if len(own.faces) and len(other.faces)]
