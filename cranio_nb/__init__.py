@@ -15,8 +15,9 @@ Vault     `chart` the vault as radius maps; `rays` gap ends for real skulls; `sl
 Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share
 Methods   `methods.slicewise` the paper; every method is `design(bone, lesions, *, options) -> Prosthesis`, and
           `catalogue` knows them by name
-Outside   `run` the pipeline as one call; `tables`, `render`, `plot`, `report`, `outputs`, `console`, `doctor`,
-          `cli`. Only `plot` imports matplotlib
+Outside   `run` the pipeline as one call; `trial` a method in a process of its own; `truth`, `compare` methods against
+          the missing bone and each other; `tables`, `render`, `plot`, `report`, `compare_page`, `outputs`, `console`,
+          `doctor`, `cli`. Only `plot` imports matplotlib
 ========  ====================================================================================================
 
 Data's way: scan -> CT -> bone -> lesion -> [slice: gap ends -> balloon -> fill] -> patch -> mesh -> `Prosthesis`.

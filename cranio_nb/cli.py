@@ -14,6 +14,7 @@ import click
 
 from . import __version__
 from .catalogue import METHODS, PRESETS, check_options
+from .cli_compare import compare
 from .cli_lab import lab
 from .cli_lessons import lessons
 from .errors import CannotWrite, CranioError, InputRefused
@@ -69,7 +70,7 @@ _threshold = click.option("--threshold", type=float, metavar="HU", help="Lowest 
 _json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 
 
-@click.group(cls=_Doors, commands=[lab, lessons], context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(cls=_Doors, commands=[compare, lab, lessons], context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="cranio-nb")
 @_debug
 def main() -> None:

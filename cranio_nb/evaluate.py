@@ -211,11 +211,18 @@ def thickness(prosthesis: Prosthesis) -> NDArray[np.float64]:
 
 def thickness_rmse(prosthesis: Prosthesis, truth: Prosthesis) -> float:
     """Root mean square difference of thickness in mm, at each outer node and the true outer node nearest to it."""
+    return thickness_error(prosthesis, thickness(prosthesis), truth, thickness(truth))
+
+
+def thickness_error(
+    prosthesis: Prosthesis, values: NDArray[np.float64], truth: Prosthesis, true_values: NDArray[np.float64]
+) -> float:
+    """`thickness_rmse` from the `thickness` of both, where that is known already."""
     nodes, true_nodes = prosthesis.surface(OUTER).vertices, truth.surface(OUTER).vertices
     if not len(nodes) or not len(true_nodes):
         raise InputRefused("EmptyMesh", "A prosthesis without an outer side has no thickness.")
     _, twin = cKDTree(true_nodes).query(nodes)
-    return _root_mean_square(thickness(prosthesis) - thickness(truth)[twin])
+    return _root_mean_square(values - true_values[twin])
 
 
 def _near_bone(skull: Volume, index: NDArray[np.intp], reach: float) -> NDArray[np.bool_]:

@@ -40,6 +40,17 @@ SIDES = {
 }
 """Directions from the head to the viewer, LPS."""
 
+LINES = (
+    (BLUE, ()),
+    (VERMILLION, (6.0, 2.0)),
+    (GREEN, (6.0, 1.5, 1.5, 1.5)),
+    (PURPLE, (2.0, 1.2)),
+    (BLACK, (1.0, 1.5)),
+    (ORANGE, (9.0, 1.5)),
+    (GREY, (3.0, 1.0, 1.0, 1.0, 1.0, 1.0)),
+)
+"""Colour and dashes (on, off, ... in line widths) of things drawn over each other, told apart by either."""
+
 _LETTERS = (("R", "L"), ("A", "P"), ("I", "S"))  # negative and positive end of each world axis
 _RIM = 14  # px left free around a view
 _PIXEL = 0.35  # mm of a slice's picture
@@ -120,6 +131,45 @@ def slice_figure(
     """`draw_slice` on a new figure."""
     figure, ax = new_figure(3.4, 2.5)
     draw_slice(ax, sliced, result, bone, patch, skeleton=skeleton)
+    return figure
+
+
+def outlines_figure(
+    bone: Volume, truth: Volume | None, patches: Sequence[Volume], centre: ArrayLike, axes: ArrayLike, reach: float
+) -> Figure:
+    """A cut through several patches for one hole: bone and truth as areas, each patch as a line of `LINES`.
+
+    Parameters
+    ----------
+    bone, truth : Volume
+        Bool masks.
+    patches : sequence of Volume
+        Bool masks, in the order of `LINES`.
+    centre : array_like, shape (3,)
+        Middle of the picture, world mm.
+    axes : array_like, shape (2, 3)
+        Unit vectors to the right and down in the picture, world.
+    reach : float
+        mm shown to the left and right of the centre; half as much above it, and as much below.
+    """
+    right, down = np.asarray(axes, float)
+    frame = np.stack([np.asarray(centre, float), down, right])
+    rows, cols = np.arange(-0.5 * reach, 0.7 * reach, _PIXEL), np.arange(-reach, reach, _PIXEL)
+    extent = (cols[0], cols[-1], rows[-1], rows[0])
+    figure, ax = new_figure(5.0, 5.0 * len(rows) / len(cols))
+    for mask, colour in ((bone, BONE), (truth, SKY)):
+        if mask is not None:
+            _fill(ax, slicing.picture(mask, frame, rows, cols), extent, colour)
+    for i, patch in enumerate(patches):
+        colour, dashes = LINES[i % len(LINES)]
+        soft = ndimage.gaussian_filter(slicing.picture(patch, frame, rows, cols).astype(float), 1.0)
+        if soft.max() > 0.5:
+            style = (0, dashes) if dashes else "-"
+            ax.contour(cols, rows, soft, levels=[0.5], colors=[colour], linestyles=[style], linewidths=1.4)
+    ax.set_xlim(extent[:2])
+    ax.set_ylim(extent[2:])
+    _letters(ax, np.stack([right, down]))
+    scale_bar(ax, 20.0)
     return figure
 
 

@@ -6,6 +6,7 @@ The page holds no text of the input's headers and no path. Everything is escaped
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -16,13 +17,14 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from . import __version__, plot
 from .implant import implant_data
 from .methods.slicewise import SlicedDesign, SliceResult
-from .prosthesis import INNER, OUTER, DistanceStats
+from .prosthesis import INNER, OUTER, DistanceStats, Lesion
 from .render import skull_surface
 from .run import RunResult, TruthCheck, parameters_used
 from .tables import (
     PAPER_BALLOONS,
     PAPER_DISTANCES,
     STATUSES,
+    Opening,
     balloon_ranges,
     count_statuses,
     telling_slices,
@@ -59,7 +61,7 @@ def report_page(result: RunResult) -> str:
     """The page of a run, as text."""
     made = result.prosthesis
     slices = made.record.get("slices", [])
-    return _template().render(
+    return page_template("report.html").render(
         version=__version__,
         result=result,
         made=made,
@@ -79,8 +81,9 @@ def report_page(result: RunResult) -> str:
     )
 
 
-@lru_cache(maxsize=1)
-def _template() -> Template:
+@lru_cache
+def page_template(name: str) -> Template:
+    """A template of the package, with the filter `num` (see `number`)."""
     environment = Environment(
         loader=PackageLoader("cranio_nb"),
         autoescape=True,
@@ -89,7 +92,7 @@ def _template() -> Template:
         lstrip_blocks=True,
     )
     environment.filters["num"] = number
-    return environment.get_template("report.html")
+    return environment.get_template(name)
 
 
 def number(value: Any, digits: int = 2) -> str:
@@ -103,7 +106,7 @@ def number(value: Any, digits: int = 2) -> str:
 
 def view_shots(result: RunResult) -> list[Shot]:
     """Skull and prosthesis from three sides."""
-    skull = skull_surface(result.bone, _floor(result))
+    skull = skull_surface(result.bone, floor(result.openings, result.lesions[0]))
     where = "; ".join(one.place for one in result.openings)
     shots = []
     for name, towards in plot.views_of([one.direction for one in result.openings]).items():
@@ -112,14 +115,14 @@ def view_shots(result: RunResult) -> list[Shot]:
             f"({where}). Letters at the edges name the patient's sides; the scale bar is 50 mm."
         )
         figure = plot.view_figure(skull, result.prosthesis.mesh, towards)
-        shots.append(_shot(figure, alt, name[0].upper() + name[1:]))
+        shots.append(shot(figure, alt, name[0].upper() + name[1:]))
     return shots
 
 
-def _floor(result: RunResult) -> float:
+def floor(openings: Sequence[Opening], largest: Lesion) -> float:
     """World z in mm down to which views show the skull: below the openings, and above the face if they allow it."""
-    lowest = min(one.lowest for one in result.openings)
-    return min(float(result.lesions[0].head_centre[2]) - 10.0, lowest - 15.0)
+    lowest = min(one.lowest for one in openings)
+    return min(float(largest.head_centre[2]) - 10.0, lowest - 15.0)
 
 
 def slice_shots(result: RunResult) -> list[Shot]:
@@ -136,7 +139,7 @@ def slice_shots(result: RunResult) -> list[Shot]:
             s, title = part.slices[i], f"{at} {i + 1} of {len(part.slices)}"
             skeleton = bool(made.parameters.get("axial", False))
             figure = plot.slice_figure(part, s, result.bone, made.patch, skeleton=skeleton)
-            shots.append(_shot(figure, _slice_alt(title, s), _slice_caption(title, s)))
+            shots.append(shot(figure, _slice_alt(title, s), _slice_caption(title, s)))
     return shots
 
 
@@ -219,10 +222,10 @@ def distance_shots(result: RunResult) -> list[Shot]:
             f"mean {d.mean():.2f} mm, largest {d.max():.2f} mm; scale bar 20 mm."
         )
         seen = "from outside" if sign > 0 else "from inside the head"
-        shots.append(_shot(figure, alt, f"{side.capitalize()} side, seen {seen}"))
+        shots.append(shot(figure, alt, f"{side.capitalize()} side, seen {seen}"))
     bar = plot.colour_bar_figure(top, "Distance from the true surface (mm)")
     alt = f"Colour scale of both maps: distance from the true surface, dark blue 0 mm to yellow {top:g} mm."
-    return [*shots, _shot(bar, alt, "Colour scale of both maps")]
+    return [*shots, shot(bar, alt, "Colour scale of both maps")]
 
 
 def _scale_top(truth: TruthCheck) -> float:
@@ -231,6 +234,7 @@ def _scale_top(truth: TruthCheck) -> float:
     return max(0.5, float(np.ceil(high * 2) / 2))
 
 
-def _shot(figure: plot.Figure, alt: str, caption: str) -> Shot:
+def shot(figure: plot.Figure, alt: str, caption: str) -> Shot:
+    """A figure as a picture of a page."""
     data = base64.b64encode(plot.png(figure)).decode("ascii")
     return Shot(data, alt, caption, round(float(figure.get_figwidth() * figure.dpi)))

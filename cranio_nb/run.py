@@ -11,19 +11,16 @@ from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from . import evaluate, lesion, surface
+from . import lesion
 from .catalogue import PRESETS, check_options, default_options, method_module
 from .errors import InputRefused, NoOpening
-from .evaluate import Score
 from .fit import GapStats, rim_gap
 from .mesh_check import MeshReport, check_mesh
-from .prosthesis import INNER, OUTER, RIM, DistanceStats, Lesion, Prosthesis
+from .prosthesis import RIM, Lesion, Prosthesis
 from .readers import Finding, LoadReport, read_ct
 from .segment import BONE_HU, segment
 from .tables import Opening, count_statuses, measure_opening, not_converged
+from .truth import TruthCheck, check_truth
 from .volume import Volume, same_grid
 
 Progress = Callable[[str, float], None]
@@ -31,25 +28,30 @@ _THIN = 2.0  # mm: a wall that workshops begin to warn about
 
 
 @dataclass(frozen=True, eq=False)
-class TruthCheck:
-    """A design against the bone that is known to be missing.
+class Prepared:
+    """A scan as every method gets it.
 
     Parameters
     ----------
-    prosthesis : Prosthesis
-        The truth as a mesh with sides.
-    score : Score
-        Overlap and surface distances of the voxels.
-    distances : dict
-        "outer" and "inner": distance in mm from each node of that side to the true one, shape (nodes,).
-    table3 : dict
-        "outer" and "inner": the same in voxels, summed up as in the paper's Table 3.
+    load : LoadReport
+    bone : Volume
+        Bool mask the design stands on.
+    lesions : tuple of Lesion
+        The openings to close, the largest first.
+    threshold : float or None
+        HU of the bone threshold; None for a mask.
+    truth : Volume or None
+        Bool mask of the missing bone on the grid of `bone`.
+    seconds : dict of str to float
+        Time of each step.
     """
 
-    prosthesis: Prosthesis
-    score: Score
-    distances: dict[str, NDArray[np.float64]]
-    table3: dict[str, DistanceStats]
+    load: LoadReport
+    bone: Volume
+    lesions: tuple[Lesion, ...]
+    threshold: float | None
+    truth: Volume | None
+    seconds: dict[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +145,35 @@ def run_design(
         When there is nothing to close.
     """
     options = dict(options or {})
-    _check_request(method, preset, options)
+    check_request(method, preset, options)
+    tell = progress or (lambda step, done: None)
+    case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=tell)
+    clock = _Clock(case.seconds)
+    made = design_for(case.bone, case.lesions, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done))
+    clock.lap("design")
+    tell("measuring", 0.8)
+    mesh = check_mesh(made.mesh)
+    rim = rim_gap(made.surface(RIM), case.bone) if (made.sides == RIM).any() else None
+    check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.lesions[0])
+    clock.lap("measures")
+    found = _findings(made, mesh, case.lesions)
+    sizes = tuple(measure_opening(one) for one in case.lesions)
+    return RunResult(
+        case.load, case.bone, case.lesions, sizes, preset, case.threshold, made, mesh, rim, check, found, clock.seconds
+    )
+
+
+def prepare(
+    path: str | PathLike[str],
+    *,
+    mask: bool | None = None,
+    threshold: float | None = None,
+    planes: tuple[int, int] | None = None,
+    truth: str | PathLike[str] | None = None,
+    allow: Collection[str] = (),
+    progress: Progress | None = None,
+) -> Prepared:
+    """Read a scan and find its openings: all that comes before a design. Parameters and errors as in `run_design`."""
     tell = progress or (lambda step, done: None)
     clock = _Clock()
     tell("reading", 0.0)
@@ -155,16 +185,7 @@ def run_design(
     lesions = lesions if planes is None else within_planes(lesions, planes)
     _check_room([one.opening for one in lesions], "The opening of the skull")
     clock.lap("bone and openings")
-    made = _design(bone, lesions, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done))
-    clock.lap("design")
-    tell("measuring", 0.8)
-    mesh = check_mesh(made.mesh)
-    rim = rim_gap(made.surface(RIM), bone) if (made.sides == RIM).any() else None
-    check = None if known is None else check_truth(made, known, bone, lesions[0])
-    clock.lap("measures")
-    found = _findings(made, mesh, lesions)
-    sizes = tuple(measure_opening(one) for one in lesions)
-    return RunResult(load, bone, lesions, sizes, preset, threshold, made, mesh, rim, check, found, clock.seconds)
+    return Prepared(load, bone, lesions, threshold, known, clock.seconds)
 
 
 def find_openings(scan: Volume, threshold: float | None = None) -> tuple[Volume, tuple[Lesion, ...], float | None]:
@@ -214,36 +235,7 @@ def within_planes(lesions: tuple[Lesion, ...], planes: tuple[int, int]) -> tuple
     return tuple(parts)
 
 
-def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Lesion) -> TruthCheck:
-    """Measure a design against the missing bone.
-
-    Parameters
-    ----------
-    made : Prosthesis
-        With a patch.
-    truth : Volume
-        Bool mask of the missing bone on the grid of `bone`.
-    bone : Volume
-        The skull with the hole.
-    largest : Lesion
-        Its head centre tells outside from inside.
-    """
-    if made.patch is None:
-        raise InputRefused("NoPatch", f"The method {made.method} makes no voxels to compare with a mask.")
-    mesh = surface.extract(truth)
-    true = Prosthesis(mesh, surface.face_sides(mesh, bone, largest.head_centre), truth, "truth")
-    distances, table3 = {}, {}
-    for name, side in (("outer", OUTER), ("inner", INNER)):
-        own, other = made.surface(side), true.surface(side)
-        if not len(own.faces) or not len(other.faces):
-            continue
-        distances[name] = evaluate.surface_distance(own.vertices, other)
-        nodes = evaluate.in_voxels(own, bone).vertices
-        table3[name] = evaluate.distance_stats(evaluate.surface_distance(nodes, evaluate.in_voxels(other, bone)))
-    return TruthCheck(true, evaluate.score(made.patch, truth, bone), distances, table3)
-
-
-def _check_request(method: str, preset: str, options: dict[str, Any]) -> None:
+def check_request(method: str, preset: str, options: dict[str, Any]) -> None:
     """Refuse a request that no input could serve, before anything is read."""
     if preset not in PRESETS:
         raise InputRefused("UnknownPreset", f"There is no preset named {preset!r}.", f"Known are {', '.join(PRESETS)}.")
@@ -269,14 +261,21 @@ def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
     return truth
 
 
-def _design(
+def design_for(
     bone: Volume,
     lesions: tuple[Lesion, ...],
     method: str,
     preset: str,
     options: dict[str, Any],
-    progress: Progress,
+    progress: Progress | None = None,
 ) -> Prosthesis:
+    """Design by a method's name, with options that differ from a preset.
+
+    Raises
+    ------
+    InputRefused, NoOpening
+        Where the method refuses, or its prosthesis reaches the edge of the image.
+    """
     module = method_module(method)
     start = module.paper_options(bone) if preset == "paper" else {}
     made: Prosthesis = module.design(bone, lesions, progress=progress, **(start | options))
@@ -322,8 +321,8 @@ def _check_room(masks: list[Volume], what: str) -> None:
 class _Clock:
     """Seconds of each step."""
 
-    def __init__(self) -> None:
-        self.seconds: dict[str, float] = {}
+    def __init__(self, before: dict[str, float] | None = None) -> None:
+        self.seconds = dict(before or {})
         self._last = time.perf_counter()
 
     def lap(self, name: str) -> None:
