@@ -28,7 +28,7 @@ STAGES = {
     "fit",
 }
 # stage 2 for real skulls, and whom each may see
-VAULT = {"chart": set(), "symmetry": set(), "rays": set(), "slicing": {"chart", "rays"}}
+VAULT = {"casting": set(), "chart": {"casting"}, "symmetry": set(), "rays": set(), "slicing": {"chart", "rays"}}
 CORE = NOUNS | MESH_WORK | STAGES | set(VAULT)
 OWNERS = {"matplotlib": {"plot"}, "pyvista": {"view3d"}, "ipywidgets": {"widgets.live"}}
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")

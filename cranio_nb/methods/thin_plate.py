@@ -1,0 +1,273 @@
+"""A thin plate across the hole: bone mask in, `Prosthesis` out.
+
+Idea: seen from inside the head each surface of the vault is one radius per direction (`chart`). A plate that lies on
+the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
+other side of the skull has bone, and D^n all partial derivatives of order n on the chart, the radii g minimise
+
+    sum w (g - f)^2 + a^4 |D^2 g|^2 + b^6 |D^3 g|^2 + c^4 sum v |D^2 (g - m)|^2 .
+
+Second order alone flattens a wide hole, third order carries the rim's curvature into it but also the rim's bumps; the
+mean of both wills errs less than either. The last term asks the plate to be curved as the other side is; it knows
+nothing of where the other side lies, so an asymmetric head and a plane that is a little off leave no step at the rim.
+The lengths a, b, c (mm) say over what distance bone is smoothed; across the hole only their ratios matter. The weights
+w and v drop bone that does not belong to the vault, ridges, vessels and sinuses (Cauchy's weights, iterated). Each
+surface is one sparse symmetric system, solved directly.
+
+Source: thin plates in cranioplasty are Carr, Fright and Beatson 1997 (doi 10.1109/42.563663): radial basis functions
+on a depth map, second order, interpolating. Ours are the radial chart, finite differences in place of radial
+functions, the third order, the smoothing, the robust weights, the inner surface and the mirrored side.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from math import comb
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage, sparse
+from scipy.sparse.linalg import splu
+
+from .. import __version__, chart, fill, lesion, surface, symmetry
+from ..chart import RadialChart
+from ..errors import InputRefused, NoOpening
+from ..prosthesis import Lesion, Prosthesis
+from ..symmetry import SymmetryPlane
+from ..volume import Volume
+
+Array = NDArray[np.float64]
+
+_NODES = 2.0  # mm between the nodes of the plate
+_REACH = 35.0  # mm of bone beside the hole that the plate lies on
+_ROUNDS = 4  # of weighting
+_LEAST_SPREAD = 0.05  # mm: residuals below this are no outliers
+_FAINT = 1e-6  # weight that holds the plate to the mean radius where bone holds it nowhere
+_LEAST_NODES = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Plate:
+    """What the method did for one lesion.
+
+    Parameters
+    ----------
+    chart : RadialChart
+        The vault around the lesion.
+    outer, inner : ndarray, shape (M, M)
+        Radii of the prosthesis, mm; nan outside the hole.
+    mirrored : tuple of ndarray, shape (M, M), or None
+        Outer and inner radii of the other side of the skull; nan where it has none.
+    """
+
+    chart: RadialChart
+    outer: Array
+    inner: Array
+    mirrored: tuple[Array, Array] | None
+
+
+def design(
+    bone: Volume,
+    lesions: Sequence[Lesion] | None = None,
+    *,
+    second: float = 1.7,
+    third: float = 2.4,
+    mirror: float = 2.2,
+    smooth: bool = True,
+    progress: Callable[[str, float], None] | None = None,
+) -> Prosthesis:
+    """Design a prosthesis by bending thin plates across the hole.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull, planes rising to the top of the head.
+    lesions : sequence of Lesion, optional
+        Openings to close; found automatically when not given.
+    second, third : float
+        The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
+    mirror : float
+        The length c over which bone is smoothed towards the curvature of the other side, mm; 0 for none.
+    smooth : bool
+        Surface without stairs (see `surface.extract`).
+    progress : callable, optional
+        Called with (stage, fraction done).
+
+    Returns
+    -------
+    Prosthesis
+        `record["symmetry"]` describes the symmetry plane or says why there is none. `working` holds a `Plate` per
+        lesion.
+
+    Raises
+    ------
+    NoOpening
+        When the vault is closed, or too little bone is seen around every opening.
+    """
+    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    tell = progress or (lambda stage, done: None)
+    began = time.perf_counter()
+    lesions = lesion.find(bone) if lesions is None else lesions
+    tell("symmetry", 0.1)
+    plane, found = _symmetry(bone, lesions[0]) if mirror else (None, {"unused": "not asked for"})
+    patch = np.zeros(bone.shape, bool)
+    plates = []
+    for i, one in enumerate(lesions):
+        tell("plates", 0.2 + 0.6 * i / len(lesions))
+        plates.append(_plate(bone, one, plane, {"second": second, "third": third, "likeness": mirror}))
+        patch |= _piece(plates[-1], one, bone)
+    if not patch.any():
+        raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
+    tell("surface", 0.8)
+    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
+    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
+    record = {"version": __version__, "seconds": time.perf_counter() - began, "symmetry": found}
+    return Prosthesis(mesh, sides, bone.with_voxels(patch), "thin-plate", options, record, tuple(plates))
+
+
+def bend(
+    values: Array,
+    hole: NDArray[np.bool_],
+    mm: float,
+    *,
+    like: Array | None = None,
+    second: float = 1.7,
+    third: float = 2.4,
+    likeness: float = 2.2,
+) -> Array:
+    """Continue a map across a hole with the least bending.
+
+    Parameters
+    ----------
+    values : ndarray, shape (M, N)
+        Radii, or differences of radii to a model of the skull, mm; nan where unknown.
+    hole : ndarray of bool, shape (M, N)
+        Where the map is wanted; what is known of it there is not used.
+    mm : float
+        Distance between neighbours on the map.
+    like : ndarray, shape (M, N), optional
+        A map of the same curvature, up to anything; nan where unknown.
+    second, third, likeness : float
+        The lengths a, b and c of the energy, mm; 0 for none.
+
+    Returns
+    -------
+    ndarray, shape (M, N)
+        The plate in the hole and up to 35 mm around it; nan elsewhere, and everywhere if nothing is known.
+    """
+    beside = ndimage.distance_transform_edt(~hole) * mm <= _REACH
+    out = np.full(values.shape, np.nan)
+    known = (np.isfinite(values) & ~hole)[beside]
+    if known.sum() < _LEAST_NODES:
+        return out
+    level = np.median(values[beside][known])
+    data = np.where(known, values[beside] - level, 0.0)
+    stiffness = _stiffness(beside, 2, second / mm) + _stiffness(beside, 3, third / mm)
+    push = np.zeros(len(data))
+    if like is not None and likeness:
+        held, push = _towards(like[beside], beside, likeness / mm)
+        stiffness = stiffness + held
+    out[beside] = level + _settle(stiffness, push, data, known)
+    return out
+
+
+def _settle(stiffness: sparse.csr_array, push: Array, data: Array, known: NDArray[np.bool_]) -> Array:
+    """The minimum of the energy, with weights that fall with the residuals they leave."""
+    weight = known.astype(float)
+    for _ in range(_ROUNDS):
+        held = (stiffness + sparse.diags_array(weight + _FAINT)).tocsc()
+        factors = splu(held, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        g = factors.solve(weight * data + push)
+        residual = np.abs(g - data)
+        spread = max(1.4826 * float(np.median(residual[known])), _LEAST_SPREAD)
+        weight = known / (1 + (residual / (3 * spread)) ** 2)
+    return g
+
+
+def _towards(like: Array, beside: NDArray[np.bool_], length: float) -> tuple[sparse.csr_array, Array]:
+    """The energy of second differences unlike those of another map: its matrix and its right-hand side."""
+    known = np.isfinite(like)
+    differences = _differences(beside, 2)
+    differences = differences[abs(differences) @ (~known).astype(float) == 0]
+    wanted = differences @ np.where(known, like, 0.0)
+    spread = 1.4826 * float(np.median(np.abs(wanted))) if len(wanted) else 0.0
+    weight = length**4 / (1 + (wanted / (4 * spread + 1e-6)) ** 2)
+    pull = (differences.T @ sparse.diags_array(weight)).tocsr()
+    return pull @ differences, pull @ wanted
+
+
+def _stiffness(beside: NDArray[np.bool_], order: int, length: float) -> sparse.csr_array:
+    """The energy length^(2 order) |D^order g|^2 as a matrix."""
+    differences = _differences(beside, order)
+    return (differences.T @ differences) * length ** (2 * order)
+
+
+def _differences(beside: NDArray[np.bool_], order: int) -> sparse.csr_array:
+    """All partial differences of an order that lie within the plate, each by the root of its multiplicity."""
+    index = np.where(beside, np.cumsum(beside).reshape(beside.shape) - 1, -1)
+    parts = [_partial(index, order - i, i) * np.sqrt(comb(order, i)) for i in range(order + 1)]
+    return sparse.vstack(parts).tocsr()
+
+
+def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_array:
+    """One partial difference, `down` times along the rows' axis and `across` times along the columns'."""
+    stencil = np.outer(*[[(-1) ** j * comb(n, j) for j in range(n + 1)] for n in (down, across)]).astype(float)
+    nodes = np.lib.stride_tricks.sliding_window_view(index, stencil.shape).reshape(-1, stencil.size)
+    nodes = nodes[(nodes >= 0).all(axis=1)]
+    rows = np.repeat(np.arange(len(nodes)), stencil.size)
+    shape = (len(nodes), int(index.max()) + 1)
+    return sparse.csr_array((np.tile(stencil.ravel(), len(nodes)), (rows, nodes.ravel())), shape=shape)
+
+
+def _symmetry(bone: Volume, one: Lesion) -> tuple[SymmetryPlane | None, dict[str, Any]]:
+    """The symmetry plane, if there is one, and what to record of it."""
+    try:
+        plane = symmetry.find(bone, one.head_centre)
+    except InputRefused as refused:
+        return None, {"unused": refused.message}
+    return plane, plane.record()
+
+
+def _plate(bone: Volume, one: Lesion, plane: SymmetryPlane | None, lengths: dict[str, float]) -> Plate:
+    """Both plates of one lesion."""
+    vault = chart.look(bone, one)
+    mirrored = None
+    if plane is not None:
+        other = chart.along(vault, plane.mirrored(bone))
+        mirrored = tuple(np.where(other.hole, np.nan, radius) for radius in (other.outer, other.inner))
+    nodes = max(1, round(_NODES / vault.mm))
+    hole = _thinned(vault.hole.astype(float), nodes) > 0
+    radii = []
+    for i, radius in enumerate((vault.outer, vault.inner)):
+        known = _thinned(np.where(vault.hole, np.nan, radius), nodes)
+        like = None if mirrored is None else _thinned(mirrored[i], nodes)
+        plate = bend(known, hole, vault.mm * nodes, like=like, **lengths)
+        radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))
+    return Plate(vault, radii[0], radii[1], mirrored)
+
+
+def _piece(plate: Plate, one: Lesion, bone: Volume) -> NDArray[np.bool_]:
+    """The patch between both plates."""
+    if not np.isfinite(plate.outer).any():
+        return np.zeros(bone.shape, bool)
+    outer, inner = chart.thickened(plate.chart, plate.outer, plate.inner)
+    return fill.main_piece(chart.voxelise(plate.chart, outer, inner, bone), one.opening.voxels)
+
+
+def _thinned(values: Array, nodes: int) -> Array:
+    """Every n-th value about the map's middle, as the mean of its known neighbours; nan where less than half are."""
+    known = np.isfinite(values)
+    width = 2 * (nodes // 2) + 1
+    share = ndimage.uniform_filter(known.astype(float), width)
+    mean = ndimage.uniform_filter(np.where(known, values, 0.0), width) / np.maximum(share, 1e-9)
+    start = (len(values) // 2) % nodes
+    return np.where(share > 0.5, mean, np.nan)[start::nodes, start::nodes]
+
+
+def _refined(values: Array, nodes: int, shape: tuple[int, ...]) -> Array:
+    """The map that `_thinned` would have made these values from: cubic between the nodes."""
+    nearest = ndimage.distance_transform_edt(np.isnan(values), return_distances=False, return_indices=True)
+    start = (shape[0] // 2) % nodes
+    return ndimage.map_coordinates(values[tuple(nearest)], (np.indices(shape) - start) / nodes, order=3, mode="nearest")
