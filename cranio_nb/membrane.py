@@ -79,7 +79,7 @@ def even(loop: Loop, step: float, smooth: float) -> Loop:
     """
     closed = np.concatenate([loop.points, loop.points[:1]])
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
-    n = max(int(round(along[-1] / step)), 8)
+    n = max(round(float(along[-1]) / step), 8)
     at = np.arange(n) * along[-1] / n
     points = np.stack([np.interp(at, along, coordinate) for coordinate in closed.T], axis=1)
     points = ndimage.gaussian_filter1d(points, smooth * n / along[-1], axis=0, mode="wrap")
@@ -176,8 +176,7 @@ def _triangles(loop: NDArray, step: float) -> tuple[NDArray[np.float64], NDArray
     flat = np.concatenate([loop, inner[cKDTree(dense).query(inner)[0] > _CLEAR * step]])
     faces = Delaunay(flat).simplices.astype(np.intp)
     faces = faces[points_in_poly(flat[faces].mean(axis=1), loop)]
-    a, b, c = np.moveaxis(flat[faces], 1, 0)
-    turned = np.cross(b - a, c - a) < 0
+    turned = _sizes(flat[faces]) < 0
     faces[turned] = faces[turned][:, ::-1]
     if not _bounded_by(faces, len(loop)):
         raise InputRefused(
@@ -198,12 +197,17 @@ def _gradients(flat: NDArray, faces: NDArray[np.intp]) -> tuple[list[sparse.csr_
     """Derivatives along both axes of the plane on each triangle, shape (F, V) each, and the triangles' sizes."""
     corners = flat[faces]
     opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
-    a, b, c = np.moveaxis(corners, 1, 0)
-    sizes = np.cross(b - a, c - a) / 2
+    sizes = _sizes(corners)
     rows = np.repeat(np.arange(len(faces)), 3)
     parts = (-opposite[..., 1] / (2 * sizes[:, None]), opposite[..., 0] / (2 * sizes[:, None]))
     shape = (len(faces), len(flat))
     return [sparse.csr_array((part.ravel(), (rows, faces.ravel())), shape=shape) for part in parts], sizes
+
+
+def _sizes(corners: NDArray) -> NDArray[np.float64]:
+    """Size of triangles in the plane, shape (F, 3, 2) -> (F,); positive counter-clockwise."""
+    (bx, by), (cx, cy) = ((corners[:, k] - corners[:, 0]).T for k in (1, 2))
+    return (bx * cy - by * cx) / 2
 
 
 def _harmonic(gradients: list[sparse.csr_array], weight: NDArray, height: NDArray, n_fixed: int) -> NDArray[np.float64]:

@@ -99,7 +99,7 @@ def _cases() -> dict[int, list[tuple[tuple[int, int], ...]]]:
     def edge(a: int, b: int) -> tuple[int, int]:
         return min(a, b), max(a, b)
 
-    found = {}
+    found: dict[int, list[tuple[tuple[int, int], ...]]] = {}
     for a, b, c, d in permutations(range(4)):
         if np.linalg.det(np.eye(4)[[a, b, c, d]]) < 0:
             continue

@@ -40,7 +40,7 @@ _MARGIN = 12.0  # mm of skull around the hole whose mesh is made
 _LEANS = 0.5  # outward part of the normal from which a vertex belongs to the outer surface, or to the inner one
 _DEAREST = 10.0  # times its length an edge costs a rim's path on the cut face, where it should not run
 _DEPTH_COUNTS = 0.1  # how much a mm along the line of sight counts against one across it when a partner is looked for
-_SMOOTH = 1.0  # voxels along the rim: the zigzag of a path along edges
+_SMOOTH = (1.5, 3.0, 6.0, 12.0)  # mm along the rim: the first that leaves no kink in it
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,8 +144,8 @@ def design_from_guides(
     for i, (one, points) in enumerate(zip(lesions, guides, strict=True)):
         tell("mesh", 0.9 * i / len(lesions))
         working.append(fill_between(bone, one, np.asarray(points, float)))
-        piece = ndimage.binary_opening(solid.inside(working[-1].solid, bone) & ~bone.voxels)
-        patch |= fill.main_piece(piece, one.opening.voxels)
+        box = _box(bone, one, working[-1].guides)
+        patch[box] |= _piece(bone.crop(box), one.opening.voxels[box], working[-1].solid)
     if not patch.any():
         raise NoOpening("NothingFilled", "Nothing of the opening could be filled.", "Place guiding points on its rim.")
     tell("surface", 0.9)
@@ -202,13 +202,27 @@ def fill_between(bone: Volume, one: Lesion, guides: NDArray[np.float64]) -> Fill
     seen = np.column_stack([sight, _DEPTH_COUNTS * radius])
     inner_at = _nearest(seen, lean < -_LEANS, seen[outer_at])
     step = float(bone.voxel_volume ** (1 / 3))
-    rims = [
-        membrane.even(_path_loop(skull, at, side * lean), step, _SMOOTH * step)
-        for at, side in ((outer_at, 1), (inner_at, -1))
-    ]
-    fills = [membrane.span(rim.points, normal, step) for rim in rims]
+    outer_rim, outer = _spanned(_path_loop(skull, outer_at, lean), normal, step)
+    inner_rim, inner = _spanned(_path_loop(skull, inner_at, -lean), normal, step)
+    closed = membrane.stitched(outer, inner, outer_rim, inner_rim)
     points = skull.vertices
-    return Filling(skull, points[outer_at], points[inner_at], *rims, *fills, membrane.stitched(*fills, *rims))
+    return Filling(skull, points[outer_at], points[inner_at], outer_rim, inner_rim, outer, inner, closed)
+
+
+def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop, Membrane]:
+    """The rim along a way on the mesh, and the fill across it; smoothed no more than it takes to be spanned."""
+    for smooth in _SMOOTH:
+        rim = membrane.even(way, step, smooth)
+        try:
+            return rim, membrane.span(rim.points, normal, step)
+        except InputRefused as refused:
+            problem = refused
+    raise problem
+
+
+def _piece(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
+    """Voxels inside the solid and off the bone, in one piece, without the slivers where a fill grazes the bone."""
+    return fill.main_piece(ndimage.binary_opening(solid.inside(closed, bone) & ~bone.voxels), opening)
 
 
 def _entry(one: Membrane) -> dict[str, Any]:
