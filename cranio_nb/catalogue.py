@@ -13,6 +13,7 @@ METHODS = {
     "slicewise": "cranio_nb.methods.slicewise",
     "hull": "cranio_nb.methods.hull",
     "reflection": "cranio_nb.methods.reflection",
+    "you": "cranio_nb.methods.you",
 }
 """Name -> module with the door ``design(bone, lesions, *, progress, **options) -> Prosthesis``. A module that also has
 ``paper_options(bone)`` offers the preset "paper"."""

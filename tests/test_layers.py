@@ -13,7 +13,7 @@ ROOT = Path(cranio_nb.__file__).parent
 WITNESS = ROOT.parent / "data_synth"
 
 NOUNS = {"errors", "volume", "curves", "mesh", "prosthesis"}
-MESH_WORK = {"nearest", "crossings", "mesh_check"}  # geometry of triangle meshes that stages share
+MESH_WORK = {"nearest", "crossings", "mesh_check", "tetrahedra", "solid", "membrane"}  # geometry of triangle meshes
 STAGES = {
     "readers",
     "segment",

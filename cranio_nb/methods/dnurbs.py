@@ -1,0 +1,245 @@
+"""A rival in the paper's outlook: two elastic sheets, pulled to the bone around the hole and left to themselves in it.
+
+Bone mask in, `Prosthesis` out. Source: Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric
+design", IEEE TVCG 2(1). Faithful are the rational surface, its control points and weights as generalised coordinates,
+the thin plate under tension, the springs to data, and Lagrange's equations (`sheet`, `sheet_motion`).
+
+Ours is what makes a prosthesis of it. The vault around the hole is seen along rays (`chart`); every ray that meets
+sound bone is a spring from the bone's outer surface to the place of that ray on the outer sheet, and so inside. Springs far
+off the sheet are weakened, so that a suture or a ridge does not dent it. The bending rigidity follows from a
+wavelength l: with one spring for each ray, a ripple of the bone of wavelength l is halved, shorter ones vanish,
+longer ones pass:
+
+    rigidity = k (l / (2 pi))^4,    k the springs' strength per mm2.
+
+The sheets at rest are read along the rays again; between them lies the patch. With weights frozen at 1, the default,
+rest is found at once by a sparse solve. With `free_weights` the sheet moves from there to its own rest by steps
+(`sheet_motion.relax`; a lesson can watch any of it).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from .. import __version__, chart, fill, lesion, sheet, sheet_motion, surface
+from ..errors import NoOpening
+from ..prosthesis import Lesion, Prosthesis
+from ..sheet import Material, Sheet, Springs
+from ..sheet_motion import Dynamics
+from ..volume import Volume
+
+_ROUNDS = 5  # of weakening springs and settling again
+_DOUBTED = 3.0  # standard deviations off the sheet at which a spring keeps a tenth of its strength
+_LEAST_DOUBT = 0.1  # mm: what the reading of a radius is off at least
+_FIND_STEPS = 6  # of looking up where a ray meets the sheet
+
+
+@dataclass(frozen=True, eq=False)
+class Sheets:
+    """What the method made of one hole; for pictures and lessons.
+
+    Parameters
+    ----------
+    vault : RadialChart
+        The bone around the hole.
+    outer, inner : Sheet
+        At rest, in mm along the chart's axes from its eye.
+    springs : tuple of Springs
+        Outer and inner, in the same frame, their last strengths.
+    material : Material
+        Of both.
+    n_iter : tuple of int
+        Steps of the outer and the inner sheet; 0 where one solve was enough.
+    converged : tuple of bool
+        Whether each came to rest.
+    """
+
+    vault: chart.RadialChart
+    outer: Sheet
+    inner: Sheet
+    springs: tuple[Springs, Springs]
+    material: Material
+    n_iter: tuple[int, int]
+    converged: tuple[bool, bool]
+
+
+def design(
+    bone: Volume,
+    lesions: Sequence[Lesion] | None = None,
+    *,
+    wavelength: float = 30.0,
+    tension: float = 0.0,
+    span: float = 8.0,
+    free_weights: bool = False,
+    tol: float = 1e-2,
+    max_iter: int = 40,
+    smooth: bool = True,
+    progress: Callable[[str, float], None] | None = None,
+) -> Prosthesis:
+    """Design a prosthesis between two elastic sheets.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull, planes rising to the top of the head.
+    lesions : sequence of Lesion, optional
+        Openings to close; found automatically when not given.
+    wavelength : float
+        Ripples of the bone of this length in mm are halved; the rigidity follows from it.
+    tension : float
+        mm2, of springs of unit strength per mm2: 0 for a plate, more for a membrane, which fills flatter.
+    span : float
+        mm between the knots of the sheets.
+    free_weights : bool
+        Whether the weights move too.
+    tol, max_iter
+        As for `sheet_motion.relax`, in mm; only with free weights.
+    smooth : bool
+        Surface without stairs (see `surface.extract`).
+    progress : callable, optional
+        Called with (stage, fraction done).
+
+    Returns
+    -------
+    Prosthesis
+        `record["sheets"]` tells of every sheet; `working` holds `Sheets` per lesion.
+
+    Raises
+    ------
+    NoOpening
+        When the vault is closed, or nothing lies between the sheets.
+    """
+    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    tell = progress or (lambda stage, done: None)
+    began = time.perf_counter()
+    lesions = lesion.find(bone) if lesions is None else lesions
+    dynamics = Dynamics(dt=1.0, mass=0.0, damping=1.0, free_weights=True)
+    motion = {"dynamics": dynamics, "tol": tol, "max_iter": max_iter} if free_weights else {}
+    working, patch = [], np.zeros(bone.shape, bool)
+    for i, one in enumerate(lesions):
+        tell("sheets", 0.9 * i / len(lesions))
+        made = fit(chart.look(bone, one), wavelength=wavelength, tension=tension, span=span, **motion)
+        radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
+        piece = chart.voxelise(made.vault, *chart.thickened(made.vault, *radii), bone)
+        patch |= fill.main_piece(piece, one.opening.voxels)
+        working.append(made)
+    if not patch.any():
+        raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")
+    tell("surface", 0.9)
+    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
+    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
+    record = {
+        "version": __version__,
+        "seconds": time.perf_counter() - began,
+        "sheets": [entry for made in working for entry in _entries(made)],
+    }
+    return Prosthesis(mesh, sides, bone.with_voxels(patch), "dnurbs", options, record, tuple(working))
+
+
+def fit(
+    vault: chart.RadialChart,
+    *,
+    wavelength: float,
+    tension: float,
+    span: float,
+    dynamics: Dynamics | None = None,
+    tol: float = 1e-2,
+    max_iter: int = 40,
+) -> Sheets:
+    """Both sheets of one hole at rest.
+
+    Parameters
+    ----------
+    vault : RadialChart
+    wavelength, tension, span, tol, max_iter
+        As for `design`.
+    dynamics : Dynamics, optional
+        How the sheets move on from where frozen weights leave them; they stay there when not given.
+    """
+    spans = (max(round((len(vault.outer) - 1) * vault.mm / span), 4),) * 2
+    size = (len(vault.outer) - 1) * vault.mm / spans[0]
+    material = Material.plate(tension, (wavelength / (2 * np.pi)) ** 4, (size, size))
+    found, springs, steps, rests = [], [], [], []
+    for radius in (vault.outer, vault.inner):
+        rest, pulled = _settled(springs_to(vault, radius, spans), spans, material)
+        moved = sheet_motion.Motion(rest, np.zeros(0), 0.0, converged=True)
+        if dynamics is not None:
+            moved = sheet_motion.start(rest, pulled, material, dynamics)
+            moved = sheet_motion.relax(moved, pulled, material, dynamics, tol=tol, max_iter=max_iter)
+        found.append(moved.sheet)
+        springs.append(pulled)
+        steps.append(moved.n_iter)
+        rests.append(moved.converged)
+    return Sheets(
+        vault, found[0], found[1], (springs[0], springs[1]), material, (steps[0], steps[1]), (rests[0], rests[1])
+    )
+
+
+def springs_to(vault: chart.RadialChart, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
+    """A spring to one surface of the bone for every ray beside the hole that meets it, of unit strength per mm2.
+
+    Parameters
+    ----------
+    vault : RadialChart
+    radius : ndarray, shape (M, M)
+        The vault's outer or inner radii.
+    spans : tuple of int
+        Of the sheet.
+    """
+    known = np.isfinite(radius) & ~vault.hole
+    points = (vault.directions[known] * radius[known][:, None]) @ vault.axes.T
+    v, u = np.nonzero(known) / (np.array([[len(radius) - 1.0]]) / np.array(spans)[:, None])
+    return Springs(points, v, u, np.full(len(points), vault.mm**2))
+
+
+def radii_of(one: Sheet, vault: chart.RadialChart) -> NDArray[np.float64]:
+    """Radius of a sheet along every ray into the hole or near it, shape (M, M), mm; nan elsewhere.
+
+    Parameters
+    ----------
+    one : Sheet
+        In mm along the chart's axes from its eye.
+    vault : RadialChart
+    """
+    near = ndimage.binary_dilation(vault.hole, iterations=3)
+    wanted = np.argwhere(near).astype(float)
+    scale = np.array(one.spans) / (len(vault.outer) - 1)
+    at = wanted
+    for _ in range(_FIND_STEPS):
+        points = one.at(*(at * scale).T)
+        at = np.clip(at + wanted - vault.locate(points @ vault.axes).T, 0, len(vault.outer) - 1)
+    radius = np.full(vault.hole.shape, np.nan)
+    radius[near] = np.linalg.norm(one.at(*(at * scale).T), axis=1)
+    return radius
+
+
+def _settled(springs: Springs, spans: tuple[int, int], material: Material) -> tuple[Sheet, Springs]:
+    """The sheet at rest with springs weakened where they stay far off it, and those springs."""
+    full = springs.strength
+    for _ in range(_ROUNDS):
+        rest = sheet.settle(springs, spans, material)
+        off = np.linalg.norm(springs.points - rest.at(springs.v, springs.u), axis=1)
+        spread = max(float(np.median(off)) * 1.4826, _LEAST_DOUBT)
+        springs = replace(springs, strength=full / (1 + (off / (_DOUBTED * spread / 3)) ** 2))
+    return sheet.settle(springs, spans, material), springs
+
+
+def _inside(vault: chart.RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A radius map with nan outside the hole."""
+    return np.where(vault.hole, radius, np.nan)
+
+
+def _entries(made: Sheets) -> list[dict[str, Any]]:
+    """JSON-able record of the outer and the inner sheet."""
+    weights = [(float(part.weights.min()), float(part.weights.max())) for part in (made.outer, made.inner)]
+    return [
+        {"spans": list(made.outer.spans), "weights": list(w), "n_iter": n, "converged": c}
+        for w, n, c in zip(weights, made.n_iter, made.converged, strict=True)
+    ]

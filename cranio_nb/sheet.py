@@ -1,0 +1,200 @@
+"""A rational tensor-product surface, and the sheet of least energy that springs hold to given points.
+
+Frame: any; lengths in mm. Parameters (v, u) run from 0 to the number of spans each way.
+
+    s(v, u) = sum_ij w_ij p_ij B_i(v) B_j(u) / sum_ij w_ij B_i(v) B_j(u)
+
+with cubic B-splines on clamped uniform knots. The energy is the thin plate under tension
+
+    E = 1/2 int a11 |s_v|^2 + a22 |s_u|^2 + b11 |s_vv|^2 + b12 |s_vu|^2 + b22 |s_uu|^2
+        + 1/2 sum_i k_i |d_i - s(v_i, u_i)|^2
+
+of Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric design", IEEE TVCG 2(1). With weights
+frozen at 1 the surface is linear in its control points, the energy quadratic, and its least found by one sparse solve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.interpolate import BSpline
+from scipy.sparse.linalg import spsolve
+
+_DEGREE = 3
+_GAUSS = 4  # points a span: exact for products of two cubics
+
+VALUE, BY_V, BY_U, BY_VV, BY_VU, BY_UU = (0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)
+STRAINS = (BY_V, BY_U, BY_VV, BY_VU, BY_UU)
+"""Derivatives in the energy, in the order of `Material.stiffness`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """A rational surface.
+
+    Parameters
+    ----------
+    control : ndarray, shape (n, m, 3)
+        Control points.
+    weights : ndarray, shape (n, m)
+        Positive; all alike for a plain B-spline surface.
+    """
+
+    control: NDArray[np.float64]
+    weights: NDArray[np.float64]
+
+    @property
+    def spans(self) -> tuple[int, int]:
+        """Number of polynomial pieces along v and u, the ends of the parameters."""
+        return self.weights.shape[0] - _DEGREE, self.weights.shape[1] - _DEGREE
+
+    def at(self, v: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points of the surface, shape (k, 3), at parameters (k,) each."""
+        values = tensor(v, u, self.spans, VALUE)
+        weights = self.weights.ravel()
+        return (values @ (self.control.reshape(-1, 3) * weights[:, None])) / (values @ weights)[:, None]
+
+
+@dataclass(frozen=True)
+class Material:
+    """What a sheet is made of.
+
+    Parameters
+    ----------
+    stiffness : tuple of float
+        a11, a22 (tension), b11, b12, b22 (bending).
+    """
+
+    stiffness: tuple[float, float, float, float, float]
+
+    @classmethod
+    def plate(cls, tension: float, rigidity: float, span: tuple[float, float]) -> Material:
+        """The same in every direction of a sheet whose spans measure `span` mm along v and u.
+
+        Parameters
+        ----------
+        tension : float
+            Factor of |grad s|^2 per mm2 of the sheet, mm2.
+        rigidity : float
+            Factor of |second derivatives|^2 per mm2, mm4.
+        span : tuple of float
+            mm.
+        """
+        v, u = span
+        bends = (rigidity / v**4, 2 * rigidity / (v * u) ** 2, rigidity / u**4)
+        return cls(tuple(v * u * x for x in (tension / v**2, tension / u**2, *bends)))  # type: ignore[arg-type]
+
+
+@dataclass(frozen=True, eq=False)
+class Springs:
+    """Springs between points in space and places on the sheet.
+
+    Parameters
+    ----------
+    points : ndarray, shape (k, 3)
+        Where they pull to.
+    v, u : ndarray, shape (k,)
+        Parameters of the places they pull.
+    strength : ndarray, shape (k,)
+        Each spring's constant.
+    """
+
+    points: NDArray[np.float64]
+    v: NDArray[np.float64]
+    u: NDArray[np.float64]
+    strength: NDArray[np.float64]
+
+
+def basis(x: NDArray[np.float64], spans: int, derivative: int = 0) -> sparse.csr_array:
+    """Cubic B-splines on clamped uniform knots, or a derivative of them, shape (k, spans + 3).
+
+    Parameters
+    ----------
+    x : ndarray, shape (k,)
+        Between 0 and `spans`.
+    spans : int
+        Number of polynomial pieces.
+    derivative : int
+        0, 1 or 2.
+    """
+    knots = np.concatenate([np.zeros(_DEGREE), np.arange(spans + 1.0), np.full(_DEGREE, spans)])
+    splines = None
+    for degree in range(_DEGREE, _DEGREE - derivative, -1):
+        width = knots[degree + 1 : -1] - knots[1 : -degree - 1]
+        n = len(width)
+        slope = sparse.diags_array([-degree / width, degree / width], offsets=[0, 1], shape=(n, n + 1))
+        splines = slope if splines is None else slope @ splines
+        knots = knots[1:-1]
+    lower = sparse.csr_array(BSpline.design_matrix(x, knots, _DEGREE - derivative))
+    return lower if splines is None else sparse.csr_array(lower @ splines)
+
+
+def tensor(
+    v: NDArray[np.float64], u: NDArray[np.float64], spans: tuple[int, int], derivative: tuple[int, int]
+) -> sparse.csr_array:
+    """Products of the B-splines along v and u at scattered parameters, shape (k, n m).
+
+    Parameters
+    ----------
+    v, u : ndarray, shape (k,)
+        Parameters.
+    spans : tuple of int
+        Along v and u.
+    derivative : tuple of int
+        How often to differentiate along each.
+    """
+    along_v, along_u = (basis(x, n, d) for x, n, d in zip((v, u), spans, derivative, strict=True))
+    rows = np.repeat(np.arange(len(v)), np.diff(along_v.indptr))
+    right = along_u[rows]  # a copy of the row along u for every entry along v
+    per_entry = np.diff(right.indptr)
+    columns = np.repeat(along_v.indices, per_entry) * along_u.shape[1] + right.indices
+    values = np.repeat(along_v.data, per_entry) * right.data
+    at = np.repeat(rows, per_entry)
+    return sparse.csr_array((values, (at, columns)), shape=(len(v), along_v.shape[1] * along_u.shape[1]))
+
+
+def gauss(spans: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Gauss points of all spans and their weights, shape (4 spans,) each."""
+    x, w = np.polynomial.legendre.leggauss(_GAUSS)
+    return (np.arange(spans)[:, None] + (x + 1) / 2).ravel(), np.tile(w / 2, spans)
+
+
+def stiffness(spans: tuple[int, int], material: Material) -> sparse.csr_array:
+    """K of a sheet whose weights are all alike, shape (n m, n m): E = 1/2 sum over coordinates of p K p.
+
+    The integrals over (v, u) fall apart into products of integrals along v and along u.
+    """
+    grams = [_grams(n) for n in spans]
+    total = sparse.csr_array((grams[0][0].shape[0] * grams[1][0].shape[0],) * 2)
+    for factor, (d, e) in zip(material.stiffness, STRAINS, strict=True):
+        total = total + factor * sparse.kron(grams[0][d], grams[1][e])
+    return sparse.csr_array(total)
+
+
+def _grams(spans: int) -> list[sparse.csr_array]:
+    """Integrals of the products of B-splines, of their first and of their second derivatives."""
+    x, w = gauss(spans)
+    parts = [basis(x, spans, d) for d in range(3)]
+    return [sparse.csr_array(part.T @ sparse.diags_array(w) @ part) for part in parts]
+
+
+def settle(springs: Springs, spans: tuple[int, int], material: Material) -> Sheet:
+    """The sheet of least energy with weights frozen at 1.
+
+    Parameters
+    ----------
+    springs : Springs
+        Enough to hold the sheet: no three of them in a line when there is no tension.
+    spans : tuple of int
+        Along v and u.
+    material : Material
+    """
+    places = tensor(springs.v, springs.u, spans, VALUE)
+    pull = places.T @ sparse.diags_array(springs.strength)
+    system = sparse.csc_array(stiffness(spans, material) + pull @ places)
+    control = spsolve(system, pull @ springs.points, permc_spec="MMD_AT_PLUS_A")
+    shape = (spans[0] + _DEGREE, spans[1] + _DEGREE)
+    return Sheet(np.asarray(control).reshape(*shape, 3), np.ones(shape))
