@@ -93,7 +93,7 @@ def look(bone: Volume, lesion: Lesion) -> RadialChart:
     chart = RadialChart(lesion.head_centre, axes, step, blank, blank, np.zeros(blank.shape, bool))
     opening, level = _opening_on(chart, points)
     expected = _expected_radius(bone, chart, opening, level)
-    inner, outer = _cast(bone, chart, expected)
+    inner, outer = walls(bone, chart.eye, chart.directions, expected)
     chart = RadialChart(lesion.head_centre, axes, step, outer, inner, opening)
     return RadialChart(lesion.head_centre, axes, step, outer, inner, _missing(chart))
 
@@ -237,25 +237,44 @@ def _sample(bone: Volume, eye: NDArray, directions: NDArray, lengths: NDArray) -
     return bone.voxels[tuple(np.where(inside, k, 0) for k in index)] & inside
 
 
-def _cast(bone: Volume, chart: RadialChart, expected: NDArray) -> tuple[NDArray, NDArray]:
-    """Inner and outer radius of the run of bone nearest to the expected outer surface, mm, nan for none."""
-    field, box = _field(bone, chart, expected)
+def walls(
+    bone: Volume, eye: NDArray[np.float64], directions: NDArray[np.float64], expected: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Inner and outer radius of the run of bone nearest to where the outer surface is expected.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask.
+    eye : ndarray, shape (3,)
+        Where the rays start, world mm.
+    directions : ndarray, shape (..., 3)
+        Unit vectors, world.
+    expected : ndarray, shape (...)
+        Radius of the outer surface in mm, roughly.
+
+    Returns
+    -------
+    inner, outer : ndarray, shape (...)
+        Radii in mm at sub-voxel precision; nan where a ray meets no bone from 16 mm below to 12 mm above `expected`.
+    """
+    rays, level = directions.reshape(-1, 3), expected.ravel()
+    field, box = _field(bone, eye, rays[::8], level[::8])
     offsets = np.arange(-_DEPTH, _HEIGHT, _SAMPLE)
-    inner, outer = np.full((2, *expected.shape), np.nan)
-    step = chart.directions @ np.linalg.inv(box.affine[:3, :3]).T
-    start = box.to_voxel(chart.eye)
-    for row in range(len(expected)):
-        at = start[:, None, None] + step[row].T[..., None] * (expected[row][:, None] + offsets)
+    radii = np.full((2, len(rays)), np.nan)
+    step = rays @ np.linalg.inv(box.affine[:3, :3]).T
+    start = box.to_voxel(eye)
+    for some in np.array_split(np.arange(len(rays)), len(rays) // 500 + 1):
+        at = start[:, None, None] + step[some].T[..., None] * (level[some, None] + offsets)
         values = ndimage.map_coordinates(field, at, order=1, mode="constant", cval=0.0)
-        inner[row], outer[row] = _nearest_run(values, offsets)
-    return inner + expected, outer + expected
+        radii[:, some] = _nearest_run(values, offsets)
+    inner, outer = radii + level
+    return inner.reshape(expected.shape), outer.reshape(expected.shape)
 
 
-def _field(bone: Volume, chart: RadialChart, expected: NDArray) -> tuple[NDArray[np.float32], Volume]:
-    """The bone around the chart as a field with its surface at 0.5, and the box it fills."""
-    ends = np.concatenate(
-        [chart.eye + chart.directions[::8, ::8] * (expected + d)[::8, ::8, None] for d in (-_DEPTH, _HEIGHT)]
-    ).reshape(-1, 3)
+def _field(bone: Volume, eye: NDArray, rays: NDArray, level: NDArray) -> tuple[NDArray[np.float32], Volume]:
+    """The bone around the ends of rays as a field with its surface at 0.5, and the box it fills."""
+    ends = np.concatenate([eye + rays * (level + d)[:, None] for d in (-_DEPTH, _HEIGHT)])
     index = bone.to_voxel(ends)
     low = np.clip(np.floor(index.min(axis=0)).astype(int) - 2, 0, np.array(bone.shape) - 1)
     high = np.clip(np.ceil(index.max(axis=0)).astype(int) + 3, low + 1, bone.shape)
