@@ -94,31 +94,31 @@ def cast(
     bone : Volume
         Bool mask.
     eye : ndarray, shape (3,)
-    directions : ndarray, shape (M, N, 3)
-    expected : ndarray, shape (M, N)
+    directions : ndarray, shape (..., 3)
+    expected : ndarray, shape (...)
 
     Returns
     -------
-    inner, outer : ndarray, shape (M, N)
+    inner, outer : ndarray, shape (...)
         mm; nan where a ray meets no bone.
     """
-    field, box = _field(bone, eye, directions, expected)
+    rays, level = directions.reshape(-1, 3), expected.ravel()
+    field, box = _field(bone, eye, rays[::8], level[::8])
     offsets = np.arange(-_DEPTH, _HEIGHT, _SAMPLE)
-    inner, outer = np.full((2, *expected.shape), np.nan)
-    step = directions @ np.linalg.inv(box.affine[:3, :3]).T
+    radii = np.full((2, len(rays)), np.nan)
+    step = rays @ np.linalg.inv(box.affine[:3, :3]).T
     start = box.to_voxel(eye)
-    for row in range(len(expected)):
-        at = start[:, None, None] + step[row].T[..., None] * (expected[row][:, None] + offsets)
+    for some in np.array_split(np.arange(len(rays)), len(rays) // 250 + 1):
+        at = start[:, None, None] + step[some].T[..., None] * (level[some, None] + offsets)
         values = ndimage.map_coordinates(field, at, order=1, mode="constant", cval=0.0)
-        inner[row], outer[row] = _nearest_run(values, offsets)
-    return inner + expected, outer + expected
+        radii[:, some] = _nearest_run(values, offsets)
+    inner, outer = (radii + level).reshape(2, *expected.shape)
+    return inner, outer
 
 
-def _field(bone: Volume, eye: NDArray, directions: NDArray, expected: NDArray) -> tuple[NDArray[np.float32], Volume]:
-    """The bone around the rays as a field with its surface at 0.5, and the box it fills."""
-    ends = np.concatenate(
-        [eye + directions[::8, ::8] * (expected + d)[::8, ::8, None] for d in (-_DEPTH, _HEIGHT)]
-    ).reshape(-1, 3)
+def _field(bone: Volume, eye: NDArray, rays: NDArray, level: NDArray) -> tuple[NDArray[np.float32], Volume]:
+    """The bone around the ends of rays as a field with its surface at 0.5, and the box it fills."""
+    ends = np.concatenate([eye + rays * (level + d)[:, None] for d in (-_DEPTH, _HEIGHT)])
     index = bone.to_voxel(ends)
     low = np.clip(np.floor(index.min(axis=0)).astype(int) - 2, 0, np.array(bone.shape) - 1)
     high = np.clip(np.ceil(index.max(axis=0)).astype(int) + 3, low + 1, bone.shape)
