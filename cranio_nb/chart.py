@@ -22,6 +22,7 @@ from .volume import Volume
 _STEP = 0.5  # degrees between rays: 0.65 mm on the vault
 _BESIDE = 42.0  # degrees of vault looked at beside the hole
 _LARGEST = 115.0  # degrees from the chart's middle: further out the chart tears
+_FILM = 0.75  # mm on the bone beside a hole that nobody would build
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,9 +139,11 @@ def voxelise(
     filled = np.isfinite(outer) & np.isfinite(inner)
     region = ndimage.binary_dilation(filled & chart.hole, iterations=max(1, round(1.0 / chart.mm)))
     spread = [_extended(np.where(filled, radius, np.nan)) for radius in (outer, inner)]
-    beside = ~chart.hole  # what reaches over the rim ends with the bone's own surface: no flap lies on the bone
-    spread[0][beside] = np.fmin(spread[0], chart.outer)[beside]
-    spread[1][beside] = np.fmax(spread[1], chart.inner)[beside]
+    # what reaches over the rim ends with the bone's own surface: no flap and no film lies on the bone
+    outside = ~chart.hole | _level(spread[0] - chart.outer)
+    inside = ~chart.hole | _level(chart.inner - spread[1])
+    spread[0][outside] = np.fmin(spread[0], chart.outer)[outside]
+    spread[1][inside] = np.fmax(spread[1], chart.inner)[inside]
     directions = chart.directions[region]
     ends = np.concatenate([chart.eye + directions * radius[region][:, None] for radius in spread])
     index = bone.to_voxel(ends)
@@ -171,6 +174,11 @@ def thickened(chart: RadialChart, outer: NDArray[np.float64], inner: NDArray[np.
     least = float(np.nanquantile((chart.outer - chart.inner)[near], 0.1))
     short = np.maximum(least - (outer - inner), 0.0) / 2
     return outer + short, inner - short
+
+
+def _level(step: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Where a prosthesis rises so little above the bone that this bone is whole; a worn rim is a real step down."""
+    return ~ndimage.binary_opening(ndimage.median_filter(np.nan_to_num(step, nan=np.inf), 5) >= _FILM, iterations=2)
 
 
 def _between(chart: RadialChart, spread: list[NDArray], region: NDArray, box: Volume) -> NDArray[np.bool_]:

@@ -93,10 +93,19 @@ def main_piece(patch: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[
     patch, opening : ndarray of bool, shape (P, R, C)
         The opening is the lesion's coarse sheet.
     """
-    labels, n_parts = ndimage.label(patch)
+    box = tuple(_span(patch.any(axis=others)) for others in ((1, 2), (0, 2), (0, 1)))
+    labels, n_parts = ndimage.label(patch[box])
     if n_parts <= 1:
         return patch
-    votes = np.bincount(labels[opening], minlength=n_parts + 1)
+    votes = np.bincount(labels[opening[box]], minlength=n_parts + 1)
     votes[0] = 0
     best = int(np.argmax(votes)) if votes.any() else int(np.bincount(labels.ravel())[1:].argmax()) + 1
-    return labels == best
+    out = np.zeros(patch.shape, bool)
+    out[box] = labels == best
+    return out
+
+
+def _span(hit: NDArray[np.bool_]) -> slice:
+    """From the first to the last hit."""
+    at = np.flatnonzero(hit)
+    return slice(int(at[0]), int(at[-1]) + 1) if len(at) else slice(0, 0)
