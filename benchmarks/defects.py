@@ -34,7 +34,7 @@ SIZES = (20, 40, 60, 80, 100, 120)
 KINDS = ("burr_hole", "unilateral", "elliptic", "ragged", "bilateral", "multiple", "near_base", "large")
 """Defects of `data_synth` with sizes of their own; "partial" is no hole and has no place here."""
 _ROUNDS = 2
-_SHOWN = ("dice", "border_dice", "hd95", "assd", "thickness_rmse", "seconds")
+_SHOWN = ("dice", "border_dice", "hd95", "assd", "thickness_rmse", "cpu")
 _MARKS = list(zip("os^Dv*X", (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, BLACK, SKY), strict=True))
 
 

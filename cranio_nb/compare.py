@@ -62,6 +62,7 @@ MEASURES = {
     "rim_gap_p95": Measure("Rim gap: 95 %", "mm", 2, "low"),
     "overlap": Measure("Overlap with bone", "voxels", 0, "low"),
     "seconds": Measure("Time", "s", 1, "low"),
+    "cpu": Measure("CPU time", "s", 1, "low"),
     "memory": Measure("Peak memory", "MB", 0, "low"),
 }
 """Every column by its name in files: accuracy against a truth, the implant itself, its cost (`Trial`)."""
@@ -190,6 +191,7 @@ def measure(trial: Trial, bone: Volume, truth: Reference | None = None) -> dict[
         "rim_gap_p95": gap.p95 if gap else _UNKNOWN,
         "overlap": evaluate.overlap(made.patch, bone),
         "seconds": trial.seconds,
+        "cpu": trial.cpu,
         "memory": trial.memory,
     }
     return found if truth is None else found | _accuracy(made, walls, truth, bone)

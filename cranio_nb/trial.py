@@ -68,6 +68,8 @@ class Trial:
         Name of the fault and the sentence for it; empty when done.
     seconds : float
         Wall time of the design alone; nan if it did not end by itself.
+    cpu : float
+        Time the processors worked for it, all threads, s: what to compare on a machine that does other things, too.
     memory : float
         MB (10^6 bytes), see `peak_memory`; nan where it cannot be known.
     """
@@ -78,6 +80,7 @@ class Trial:
     code: str
     message: str
     seconds: float
+    cpu: float
     memory: float
 
 
@@ -112,7 +115,7 @@ def attempt(bone: Volume, lesions: Sequence[Lesion], contender: Contender) -> Tr
     """Let a contender design in this process; never raises for what a method does."""
     method_module(contender.method)  # loaded before the clock runs
     made, status, code, message = None, "done", "", ""
-    began = time.perf_counter()
+    began, cpu = time.perf_counter(), time.process_time()
     try:
         made = design_for(bone, tuple(lesions), contender.method, contender.preset, contender.options)
     except CranioError as error:
@@ -120,8 +123,8 @@ def attempt(bone: Volume, lesions: Sequence[Lesion], contender: Contender) -> Tr
     except Exception as error:  # a rival's fault is a row of the table, not the end of it
         code = type(error).__name__
         status, message = "broken", f"Something unforeseen went wrong in the method ({code})."
-    seconds = time.perf_counter() - began
-    return Trial(contender, status, made and replace(made, working=()), code, message, seconds, peak_memory())
+    spent = time.perf_counter() - began, time.process_time() - cpu
+    return Trial(contender, status, made and replace(made, working=()), code, message, *spent, peak_memory())
 
 
 def attempt_apart(bone: Volume, lesions: Sequence[Lesion], contender: Contender) -> Trial:
@@ -138,7 +141,7 @@ def attempt_apart(bone: Volume, lesions: Sequence[Lesion], contender: Contender)
                 trial, patch = pool.submit(_child, folder, bone.affine, centres, contender).result()
             except BrokenProcessPool:
                 message = "The process of the method ended before its time; it may have run out of memory."
-                return Trial(contender, "broken", None, "ProcessEnded", message, float("nan"), float("nan"))
+                return Trial(contender, "broken", None, "ProcessEnded", message, *[float("nan")] * 3)
     if trial.prosthesis is None or patch is None:
         return trial
     voxels = np.zeros(bone.shape, bool)

@@ -55,7 +55,7 @@ def counted():
         tried.append(contender.name)
         if len(tried) % 2:
             return attempt(bone, lesions, contender)
-        return Trial(contender, "refused", None, "TooSmall", "It is too small, or so.", 0.0, 0.0)
+        return Trial(contender, "refused", None, "TooSmall", "It is too small, or so.", 0.0, 0.0, 0.0)
 
     return run, tried
 
