@@ -11,7 +11,7 @@ from skimage.morphology import convex_hull_image
 
 from cranio_nb import check, lessons
 from cranio_nb.balloon import PAPER_PRESSURE, inflate, tangent_pressure
-from cranio_nb.curves import cubic
+from cranio_nb.curves import cubic, spiral
 from cranio_nb.exercises import EXERCISES
 
 SOURCES = sorted((Path(__file__).parents[1] / "notebooks" / "src").glob("*.py"))
@@ -22,6 +22,7 @@ LIBRARY = {
     "convex_hull_image": convex_hull_image,
     "inflate": inflate,
     "cubic": cubic,
+    "spiral": spiral,
     "tangent_pressure": tangent_pressure,
     "PAPER_PRESSURE": PAPER_PRESSURE,
 }
@@ -47,6 +48,12 @@ def function(text):
 
 
 SOLUTIONS, STUBS = shipped(False), shipped(True)
+
+SLOPES = "slopes = np.array([[length, length * np.tan(t)] for t in (theta0, theta1)])"
+REST = (
+    "k = tangent_pressure(length, theta0, theta1, n); "
+    "return inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve"
+)
 
 # what students write, and a word of the hint that they should get
 WRONG = {
@@ -92,9 +99,15 @@ WRONG = {
         ("return ndimage.binary_dilation(bone) & ~bone", "outside the bone"),
         ("return ndimage.binary_dilation(bone) & ~ndimage.binary_erosion(bone)", "two pixels"),
         ("return bone & ~ndimage.binary_erosion(bone, np.ones((3, 3)))", "cross"),
+        (
+            "r = np.roll; return bone & ~(r(bone, 1, 0) & r(bone, -1, 0) & r(bone, 1, 1) & r(bone, -1, 1))",
+            "opposite border",
+        ),
     ],
     "3.2": [
-        ("a, b = np.polyfit(points[:, 0], points[:, 1], 1); return np.array([1, a])", "upright"),
+        ("a, b = np.polyfit(points[:, 0], points[:, 1], 1); return np.array([1, a])", "along a row"),
+        ("a, b = np.polyfit(points[:, 1], points[:, 0], 1); return np.array([a, 1])", "along a column"),
+        ("d = points[-1] - points[0]; return d / np.linalg.norm(d)", "to the last"),
         ("return np.linalg.svd(points)[2][0]", "centred"),
         ("return np.linalg.svd(points - points.mean(0))[2][-1]", "normal"),
     ],
@@ -105,19 +118,27 @@ WRONG = {
     ],
     "4.1": [
         ("return k * n ** 2 / 8", "N = n - 1"),
-        ("return k * (n - 1) ** 2 / 2", "middle"),
+        ("return k * (n - 1) ** 2 / 2", "Four times"),
         ("return k * (n - 1) ** 2", "factor"),
     ],
     "4.2": [
         ("return length * (np.tan(theta0) - np.tan(theta1)) / n ** 2", "N = n - 1"),
         ("return length * (np.tan(theta0) + np.tan(theta1)) / (n - 1) ** 2", "negative"),
         ("r = np.radians; return length * (np.tan(r(theta0)) - np.tan(r(theta1))) / (n - 1) ** 2", "radians"),
+        ("return length * (np.tan(theta1) - np.tan(theta0)) / (n - 1) ** 2", "sign"),
+        ("return length * (theta0 - theta1) / (n - 1) ** 2", "These are angles;"),
+        ("return length * (theta0 + np.pi - theta1) / (n - 1) ** 2", "above the chord"),
     ],
     "4.3": [
         ("k = PAPER_PRESSURE", "paper's k"),
         ("k = -tangent_pressure(length, theta0, theta1, n)", "into the head"),
         ("k = 0", "flat"),
         ("return np.linspace([0, 0], [length, 0], n)", "chord"),
+        ("return cubic(length, theta0, theta1, n)", "start curve"),
+        ("return spiral(length, theta0, theta1, n)[0]", "spiral"),
+        ("k = length * (np.tan(theta0) - np.tan(theta1)) / n**2", "too flat"),
+        (f"{SLOPES} / n; {REST}", "n - 1 steps"),
+        (f"{SLOPES}; {REST}", "divide by n - 1"),
     ],
     "5.1": [
         ("return np.vstack([outer, inner])", "bow tie"),
@@ -169,10 +190,7 @@ WRONG = {
         ("return 2 * np.degrees(np.arcsin(chord / 2 / radius))", "centre"),
     ],
 }
-BALLOON_END = (
-    "slopes = np.array([[length, length * np.tan(t)] for t in (theta0, theta1)]) / (n - 1); "
-    "return inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve"
-)
+BALLOON_END = f"{SLOPES} / (n - 1); return inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve"
 
 
 def written(name, body):
@@ -250,7 +268,7 @@ def test_gives_points_for_part_of_the_cases():
 
 def test_says_how_far_off_an_unknown_answer_is_in_its_unit():
     verdict = check.exercise("4.3", lambda length, a, b, n: cubic(length, a, b, n) + np.array([0, 5.0]))
-    assert "mm, where 0.5 mm is allowed" in verdict.message
+    assert "mm, where 0.1 mm is allowed" in verdict.message
 
 
 def test_sees_a_changed_input():

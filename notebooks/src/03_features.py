@@ -22,9 +22,12 @@
 # **From the paper:** section 2, Figures 2 and 3.
 
 # %%
+from contextlib import suppress
+
 import numpy as np
 from scipy import ndimage
 from scipy.spatial import ConvexHull
+from skimage.morphology import skeletonize
 
 from cranio_nb import check, classroom, features, lesion, segment, widgets
 from cranio_nb.curves import ChordFrame
@@ -32,10 +35,13 @@ from cranio_nb.curves import ChordFrame
 # %% [markdown]
 # ## Parameters
 #
-# | name | meaning | unit | paper |
-# |---|---|---|---|
-# | `skip` | boundary left out next to the gap | px along the bone | 10 points |
-# | `reach` | boundary that carries the tangent, after that | px along the bone | not given |
+# | name | meaning | unit in the code | unit of the sliders | paper |
+# |---|---|---|---|---|
+# | `skip` | boundary left out next to the gap | px along the bone | mm | 10 points = 4.5 mm |
+# | `reach` | boundary that carries the tangent, after that | px along the bone | mm | not given |
+#
+# The paper's pixels are 0.45 mm, so its 10 points are 4.5 mm. In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are
+# 5 px here, and 10 px are 9 mm.
 #
 # *The switch:* `"full"` for the paper's size, or `classroom.load(scan="path/to/your/scan")`.
 
@@ -50,7 +56,7 @@ mask, px = bone.voxels[plane], case.px
 # ## 1. Boundary, skeleton, hull
 #
 # - **Boundary B**: pixels of bone that touch what is not bone.
-# - **Skeleton**: the middle line of the bone, one pixel thin.
+# - **Skeleton** (also *spine*): the middle line of the bone, one pixel thin.
 # - **Hull S**: the smallest convex region that holds the skeleton.
 #
 # **Predict.** The skeleton runs in the *middle* of the bone. Which part of the boundary lies inside its hull, the
@@ -89,16 +95,39 @@ classroom.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.in
 # ## 2. The ends
 #
 # The gap ends where the skeleton ends. But a squarely cut bone has two corners there, and the skeleton forks into
-# both. Real bone adds spurs. So we take the **longest path** through the skeleton, measured along it, and cut off
-# what runs into a corner.
-#
+# both. Real bone adds spurs. So we take the **longest path** through the skeleton, measured along it. The path still
+# runs into one of the two corners. There it comes near the boundary: it is no longer in the middle. So we **cut off**
+# its end, up to the first point that lies as deep in the bone (at least 0.8 of it) as the path does further back.
+
+# %%
+row, col = np.mgrid[-30:30, -30:30]
+bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) <= 5)
+
+# %% tags=["nbval-check-output"]
+raw, kept = np.argwhere(skeletonize(bar)), features.slice_features(bar).skeleton[0]
+fig, (ax,) = classroom.axes(height=3.6, width=6.0)
+classroom.show_mask(ax, bar, px=px, title="one end of a bar, cut squarely")
+classroom.show_points(ax, raw, px=px, colour="#D55E00", marker="s", label="raw skeleton")
+classroom.show_curve(ax, kept, px=px, line=0, label="path kept")
+classroom.zoom(ax, [kept[-8:]], px=px, margin=9)
+ax.legend(loc="upper right", fontsize=8)
+alt = "The raw skeleton forks into both corners of the cut; the path kept ends at the fork."
+classroom.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} px")
+
+# %% [markdown]
 # ## 3. The tangents
 #
 # At the very end of the bone the boundary turns round the corner into the cut face. Its direction there says nothing
 # about the skull. So the first pixels are left out (`skip`), and a line is fitted to the next ones (`reach`).
 #
-# **Predict, then move, then explain.** Move `skip` to 0: what do the tangents do? Then move `reach` to 2 mm, and
-# to 40 mm.
+# In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used.
+#
+# **Predict, then move, then explain.**
+#
+# 1. Move `skip` to 0: what do the tangents do, and the white circles?
+# 2. Put `skip` back to 4.5 mm and `reach` to 6 mm, and step through the slices around this one. Then make `reach`
+#    smaller until the package refuses.
+# 3. Move `reach` to 40 mm.
 
 # %% tags=["nbval-check-output"]
 widgets.features(bone, plane, opening=opening.opening)
@@ -107,10 +136,13 @@ widgets.features(bone, plane, opening=opening.opening)
 # <details>
 # <summary>Answer</summary>
 #
-# - `skip` = 0: pixels of the cut face join the fit and turn the line.
-# - `reach` small: a few pixels of a staircase; the line jumps from slice to slice (noise).
-# - `reach` large: the bone is curved, and the line shows the direction in the *middle* of the neighbourhood, not at
-#   the end (bias). Both errors bend the balloon.
+# 1. Pixels of the cut face join the fit and turn the line. The white circles move into the cut face: the outer ends
+#    stand 57 mm apart, and the true gap is 65 mm wide.
+# 2. A few pixels of a staircase: the line jumps by some 10 degrees from slice to slice (noise). With fewer than 4
+#    pixels the package refuses to fit a line.
+# 3. The bone is curved, and the line shows the direction in the *middle* of the neighbourhood, not at the end (bias).
+#
+# Noise and bias both bend the balloon.
 #
 # </details>
 #
@@ -118,34 +150,74 @@ widgets.features(bone, plane, opening=opening.opening)
 #
 # For a synthetic head the true angles are known in closed form. We measure angles above the chord, as the paper
 # does: theta0 at one end, theta1 (obtuse) at the other.
+#
+# Mind one thing. The measured gap begins at the first pixel that is used. With a large `skip` it is *wider* than the
+# true one, and a wider gap in a round skull has steeper ends. This is no error. In a circle of radius R, the radius to
+# one end, half the chord L and the line from the centre to its middle form a right triangle: sin theta = L / (2 R). So
+# the angles to **expect** are the true ones with their sines scaled by L / true L.
 
-# %% tags=["nbval-check-output"]
+# %%
 inside = bone.to_voxel(opening.head_centre)[1:]
 
 
-def angles(skip, reach):
-    outer, _ = features.gap_ends(seen, opening.opening.voxels[plane], skip=skip, reach=reach)
-    return np.degrees(ChordFrame.of(outer, inside).end_angles(outer))
+def measured(plane, skip, reach):
+    """Length of the gap (px) and its end angles (degrees), as found in a slice."""
+    seen, hole = features.slice_features(bone.voxels[plane]), opening.opening.voxels[plane]
+    outer, _ = features.gap_ends(seen, hole, skip=skip, reach=reach)
+    frame = ChordFrame.of(outer, inside)
+    return frame.length, np.degrees(frame.end_angles(outer))
 
 
-print("degrees                   theta0  theta1")
-for skip, reach in ((0, 10), (3, 10), (10, 10), (3, 6), (3, 25)):
-    theta0, theta1 = angles(skip, reach)
-    print(f"skip {skip:2} px, reach {reach:2} px: {theta0:7.1f} {theta1:7.1f}")
-for theta0, theta1 in case.true_angles(plane)[:1]:
-    print(f"closed form:            {theta0:8.1f} {theta1:7.1f}")
+# %%
+def expected(plane, length):
+    """End angles (degrees) of a gap of this length at the same place; nan without a truth."""
+    if not case.true_angles(plane):
+        return np.full(2, np.nan)
+    curve, angles = case.true_curves(plane)[0], case.true_angles(plane)[0]
+    wider = length / np.linalg.norm(curve[-1] - curve[0])
+    lean = np.degrees(np.arcsin(wider * np.sin(np.radians(angles))))
+    return np.array([lean[0], 180 - lean[1]])
+
+
+# %% tags=["nbval-check-output"]
+settings = ((0, 10), (3, 10), (10, 10), (3, 6), (3, 25))
+for curve, angles in zip(case.true_curves(plane)[:1], case.true_angles(plane), strict=False):
+    true_length = np.linalg.norm(curve[-1] - curve[0])
+    print(f"true gap: L {true_length:.1f} px, theta0 {angles[0]:.1f}, theta1 {angles[1]:.1f}")
+for skip, reach in settings:
+    length, (theta0, theta1) = measured(plane, skip, reach)
+    want0, want1 = expected(plane, length)
+    print(f"skip {skip:2} px, reach {reach:2} px: L {length:.1f} px,", end=" ")
+    print(
+        f"theta0 {theta0:4.1f} (expect {want0:.1f}), theta1 {theta1:.1f} (expect {want1:.1f})"
+    )
 
 # %% [markdown]
-# Compare with the closed form, and mind one thing: with a large `skip` the gap is also *wider*, for it begins at the
-# first pixel that is used, and a wider gap in a round skull has steeper ends. So part of the difference is no error.
-# With radius R and chord L a circle has sin theta = L / (2 R) (you will derive this in exercise 10.2).
+# One slice cannot tell noise from bias. Ten slices can: the **mean** error is bias, the **scatter** is noise. We count
+# how much *steeper* than expected the ends are.
+
+# %% tags=["nbval-check-output"]
+nearby = [p for p in range(*opening.planes) if abs(p - plane) <= 5]
+for skip, reach in settings:
+    steeper = []
+    for p in nearby:
+        with suppress(features.SliceProblem):
+            length, angles = measured(p, skip, reach)
+            steeper.append((angles - expected(p, length)) * [1, -1])
+    off = f"mean {np.mean(steeper):+5.1f}, scatter {np.std(steeper, axis=0).mean():.1f} degrees"
+    print(f"skip {skip:2} px, reach {reach:2} px: {off} ({len(steeper)} slices)")
+
+# %% [markdown]
+# With `reach` 6, 10, 25 px the scatter falls and the mean error grows: that is the trade of noise against bias. With
+# `skip` = 0 the cut face adds an error of its own, and a larger one. From `skip` 3 to 10 px the angles grow mostly
+# because the gap is wider.
 #
 # **Question.** The paper leaves out "10 points". On a scan with pixels half as large, is this the same?
 #
 # <details>
 # <summary>Answer</summary>
 #
-# No: 10 px of 0.45 mm are 4.5 mm, 10 px of 0.9 mm are 9 mm. A length of the patient should be given in mm. The
+# No: 10 px of 0.9 mm are 9 mm, 10 px of 0.45 mm are 4.5 mm. A length of the patient should be given in mm. The
 # sliders above do so, and so do the options of `slicewise.design`.
 #
 # </details>
@@ -183,7 +255,8 @@ classroom.picture(fig, alt, f"{boundary(mask).sum()} boundary pixels")
 
 # %% [markdown]
 # **Exercise 3.2.** The tangent. Fit a line to points of shape (n, 2) and return its direction as (row, col). The fit
-# must work for lines in *any* direction, so `np.polyfit` will not do: it measures distances along one axis only.
+# must work for lines in *any* direction, along a row and along a column too, so `np.polyfit` will not do: it measures
+# distances along one axis only. All points count: a single one may be off by 2 px.
 
 
 # %% tags=["solution"]
