@@ -54,6 +54,19 @@ REST = (
     "k = tangent_pressure(length, theta0, theta1, n); "
     "return inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve"
 )
+FRAME = ("l[0]", "l[-1]", "l[:, 0]", "l[:, -1]")
+
+
+def holes(*borders, structure="None", compare="<=", sizes="s", given="mask"):
+    """A way to fill small holes, written as a student does."""
+    return (
+        f"l, n = ndimage.label(~mask, {structure}); s = np.bincount(l.ravel()); s = {sizes}; "
+        f"out = {given}.copy(); border = {{*np.concatenate([{', '.join(borders)}])}}\n"
+        f"    for i, size in enumerate(s):\n"
+        f"        if i > 0 and size {compare} max_pixels and i not in border: out[l == i] = True\n"
+        "    return out"
+    )
+
 
 # what students write, and a word of the hint that they should get
 WRONG = {
@@ -61,16 +74,23 @@ WRONG = {
         ("return mask.sum()", "counts voxels"),
         ("return mask.sum() * spacing[0] * spacing[1] * spacing[2]", "1000 mm3"),
         ("return np.count_nonzero(mask) * spacing[1] * spacing[2] / 1000", "area"),
+        ("return mask.size * np.prod(spacing) / 1000", "mask.sum()"),
+        ("return mask.sum() * np.prod(spacing) / 10", "10 x 10 x 10"),
+        ("return mask.sum() * spacing[0] * spacing[1] ** 2 / 1000", "not equal"),
+        ("return mask.sum() * spacing[1] ** 3 / 1000", "not equal"),
     ],
     "0.2": [
         ("return np.sum(a & b) / np.sum(a | b)", "Jaccard"),
         ("return np.logical_and(a, b).sum() / (a.sum() + b.sum())", "factor 2"),
         ("return np.mean(a == b)", "air"),
+        ("return 2 * np.sum(a & b) / np.sum(a + b)", "a + b means"),
     ],
     "1.1": [
         ("return 255 * (hu - centre + width / 2) / width", "clip"),
         ("return np.clip((hu - centre) / width, 0, 1) * 255", "starts at"),
         ("return np.clip((hu - centre) / width + 0.5, 0, 1)", "0 to 1"),
+        ("return ((hu - centre + width / 2) / width * 255).astype(int).astype(np.uint8)", "uint8"),
+        ("return np.clip((hu - centre + width) / (2 * width), 0, 1) * 255", "twice too wide"),
     ],
     "1.2": [
         ("return affine[:3, :3].dot(index)", "origin"),
@@ -81,11 +101,24 @@ WRONG = {
         ("z = sorted(positions[:, 2]); return np.median(np.diff(z))", "tilted"),
         ("return np.median(np.diff(positions @ normal))", "any order"),
         ("return positions[1, 2] - positions[0, 2]", "any order"),
+        ("return np.median(np.abs(np.diff(positions @ normal)))", "any order"),
+        ("return np.diff(np.sort(positions @ normal)).mean()", "pulls the mean"),
     ],
     "2.1": [
         ("labels, n = ndimage.label(mask); return labels == 1", "met first"),
         ("l, n = ndimage.label(mask); return l == np.bincount(l.ravel()).argmax()", "background"),
         ("return mask", "Nothing was dropped"),
+        ("l, n = ndimage.label(mask); return l == np.bincount(l.ravel())[1:].argmax()", "add 1"),
+        (
+            "l = [ndimage.label(s)[0] for s in mask]; "
+            "return np.array([(s == np.append(0, np.bincount(s.ravel())[1:]).argmax()) & (s > 0) for s in l])",
+            "whole mask once",
+        ),
+        (
+            "l, n = ndimage.label(mask, np.ones((3, 3, 3))); return l == np.bincount(l.ravel())[1:].argmax() + 1",
+            "not connected",
+        ),
+        ("l, n = ndimage.label(mask); return l * (l == np.bincount(l.ravel())[1:].argmax() + 1)", "a bool mask"),
     ],
     "2.2": [
         ("return ndimage.binary_fill_holes(mask)", "brain"),
@@ -94,6 +127,14 @@ WRONG = {
             "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); return mask | ((s[l] <= max_pixels) & (l > 0))",
             "border",
         ),
+        (holes("l[0]", "l[-1]"), "four borders"),
+        (holes("l[:, 0]", "l[:, -1]"), "four borders"),
+        (holes("l[0]", "l[-1]", "l[:, 0]"), "four borders"),
+        (holes(*FRAME, structure="np.ones((3, 3))"), "4 neighbours"),
+        (holes(*FRAME, compare="<"), "at most"),
+        (holes(*FRAME, sizes="s[1:]"), "label before"),
+        (holes(*FRAME, given="np.zeros_like(mask)"), "holes alone"),
+        (holes(*FRAME, given="(mask * 1)"), "a bool mask"),
     ],
     "3.1": [
         ("return ndimage.binary_dilation(bone) & ~bone", "outside the bone"),

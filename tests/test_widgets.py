@@ -208,6 +208,15 @@ def test_moving_k_moves_the_balloon_as_the_stage_says(live, arch, k):
     assert all(count(shown[y - 1 : y + 2, x - 1 : x + 2], BLUE) for x, y in at)
 
 
+def test_a_balloon_that_sinks_below_its_chord_says_how_far(static, arch):
+    panel = widgets.balloon(arch, INSIDE)
+    assert "px above the chord" in panel.view.line
+    panel.set(pressure=-0.1)
+    rise = np.radians(30)
+    low = inflation.inflation(100.0, (rise, np.pi - rise), *list(panel.values.values())[:-1]).curves[-1][:, 1].min()
+    assert low < -1 and f"px above and {-low:.1f} px below the chord" in panel.view.line
+
+
 def test_all_steps_are_kept_and_the_last_is_at_rest(arch):
     run = inflation.inflation(100.0, (0.5, 2.6), inflation.PRESETS[0], 0.062, 21, 1.0, 1.0, 1.0, 1e-3)
     assert run.converged and len(run.curves) == len(run.change) + 1

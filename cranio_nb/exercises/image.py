@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 from scipy import ndimage
 
@@ -10,7 +12,7 @@ from .task import Exercise, different_pixels, largest_difference, small_head
 
 def _patches():
     head = small_head()
-    return [(head.implant, (3.0, 1.75, 1.75)), (head.implant[:22], (3.0, 1.75, 1.75)), (head.implant, (1.0, 0.5, 0.5))]
+    return [(head.implant, (3.0, 1.75, 1.75)), (head.implant[:22], (3.0, 1.75, 1.5)), (head.implant, (1.0, 0.5, 0.8))]
 
 
 def _pairs():
@@ -20,6 +22,11 @@ def _pairs():
 
 def _grey(hu, centre, width):
     return np.clip((hu - (centre - width / 2)) / width, 0, 1) * 255
+
+
+def _wrapped(hu, centre, width):
+    """Grey levels that were not clipped before they became uint8."""
+    return np.trunc((hu - (centre - width / 2)) / width * 255) % 256
 
 
 def _slices():
@@ -36,7 +43,7 @@ def _positions():
     tilt = np.radians(15.0)
     normal = np.array([0.0, -np.sin(tilt), np.cos(tilt)])
     upright = np.array([[0.0, 0.0, 2.5 * k] for k in range(6)])
-    shuffled = upright[[3, 0, 5, 1, 4, 2]] - [100.0, 140.0, 860.0]
+    shuffled = np.array([[-100.0, -140.0, 2.5 * k - 860.0] for k in (5, 0, 6, 1, 4, 2)])  # slice 3 is missing
     leaning = np.array([[0.0, 0.0, 2.5 * k / np.cos(tilt)] for k in range(6)])
     return [(upright, np.array([0.0, 0.0, 1.0])), (shuffled, np.array([0.0, 0.0, 1.0])), (leaning, normal)]
 
@@ -52,41 +59,77 @@ def _largest(mask):
     return labels == sizes.argmax()
 
 
+def _largest_over_corners(mask):
+    labels, _ = ndimage.label(mask, np.ones((3, 3, 3)))
+    return labels == np.bincount(labels.ravel())[1:].argmax() + 1
+
+
+def _largest_shifted(mask):
+    labels, _ = ndimage.label(mask)
+    return labels == np.bincount(labels.ravel())[1:].argmax()
+
+
+def _largest_of_slices(mask):
+    return np.array([_largest(plane) for plane in mask])
+
+
+def _largest_of_slices_with_bone(mask):
+    return _largest_of_slices(mask) & mask
+
+
 def _parts():
     bone = small_head().bone
     couch = bone.copy()
     couch[2:12, 120:123, 20:40] = True
     early = bone.copy()
     early[0:1, 1:5, 1:5] = True
-    return [(couch,), (early,), (bone,)]
+    blocks = np.zeros((6, 20, 20), bool)
+    blocks[1:5, 2:8, 2:8] = blocks[1:5, 8:12, 8:12] = True  # they share an edge only
+    blocks[5, 15:18, 15:18] = True  # alone in its slice
+    return [(couch,), (early,), (blocks,)]
 
 
-def _fill_small(mask, max_pixels):
-    labels, n = ndimage.label(~mask)
+def _bool_pixels(answer, right):
+    """Number of pixels in which two masks differ; what is not bool is no mask."""
+    return different_pixels(answer, right) if np.asarray(answer).dtype == bool else np.inf
+
+
+_FOUR = (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1])  # first, last row; first, last column
+_SOME = ((0, 1), (2, 3), (0, 2), (1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))  # borders that students look at
+
+
+def _holes(mask, max_pixels, *, borders=(0, 1, 2, 3), structure=None, shift=0):
+    """Parts of the background of at most max_pixels that touch none of the borders; `shift` mixes up their sizes."""
+    labels, n = ndimage.label(~mask, structure)
     sizes = np.bincount(labels.ravel(), minlength=n + 1)
-    small = sizes <= max_pixels
+    small = np.roll(sizes, -shift) <= max_pixels
+    for border in borders:
+        small[labels[_FOUR[border]]] = False
     small[0] = False
-    small[np.unique(np.r_[labels[0], labels[-1], labels[:, 0], labels[:, -1]])] = False
-    return mask | small[labels]
+    return small[labels]
 
 
-def _fill_small_and_border(mask, max_pixels):
-    labels, n = ndimage.label(~mask)
-    small = np.bincount(labels.ravel(), minlength=n + 1) <= max_pixels
-    small[0] = False
-    return mask | small[labels]
+def _fill_small(mask, max_pixels, **how):
+    return mask | _holes(mask, max_pixels, **how)
 
 
 def _rings():
     row, col = np.indices((80, 80)) - 40
     ring = (np.hypot(row, col) < 30) & (np.hypot(row, col) > 22)
-    spotted = ring.copy()
+    spotted, corners, pockets = ring.copy(), ring.copy(), ring.copy()
     spotted[14, 38:42] = spotted[40, 64:67] = False
-    cut = spotted.copy()
-    cut[38:42, :3], cut[0:3, 0:3] = True, True
-    cut[0, 0] = False
-    return [(ring, 20), (spotted, 20), (cut, 20)]
+    corners[12:16, 38:43] = False  # 20 pixels
+    corners[34:40, 64:66] = corners[40:46, 66:68] = False  # 12 each, and they share a corner only
+    pockets[14, 38:42] = False
+    for border in (np.s_[:4, 37:43], np.s_[-4:, 37:43], np.s_[37:43, :4], np.s_[37:43, -4:]):
+        pockets[border] = True
+    for border in (np.s_[:2, 39:41], np.s_[-2:, 39:41], np.s_[39:41, :2], np.s_[39:41, -2:]):
+        pockets[border] = False
+    return [(spotted, 8), (corners, 20), (pockets, 20)]
 
+
+_CUBES = "The three spacings are not equal: use each of them once."
+_BORDERS = "What touches any of the four borders is outside: first and last row, first and last column."
 
 IMAGE = {
     "0.1": Exercise(
@@ -100,7 +143,15 @@ IMAGE = {
             (lambda m, s: m.sum(), "This counts voxels. Each voxel has a volume: the product of its three spacings."),
             (lambda m, s: m.sum() * np.prod(s), "This is in mm3; 1 cm3 is 1000 mm3."),
             (lambda m, s: m.sum() * s[1] * s[2] / 1000, "This is an area: the distance between slices is left out."),
-            (lambda m, s: m.sum() * s[0] ** 3 / 1000, "The voxels are not cubes: use all three spacings."),
+            (lambda m, s: m.size * np.prod(s) / 1000, "This counts all voxels; mask.sum() counts those that are True."),
+            *(
+                (lambda m, s, to=to: m.sum() * np.prod(s) / to, "1 cm is 10 mm, so 1 cm3 is 10 x 10 x 10 = 1000 mm3.")
+                for to in (10, 100)
+            ),
+            *(
+                (lambda m, s, three=three: m.sum() * np.prod(np.take(s, three)) / 1000, _CUBES)
+                for three in ((0, 0, 0), (1, 1, 1), (2, 2, 2), (0, 1, 1), (0, 2, 2), (0, 0, 1))
+            ),
         ),
         ("Count the voxels first.", "Multiply by the volume of one voxel.", "mask.sum() * np.prod(spacing) / 1000"),
         "voxels became cubic centimetres.",
@@ -114,6 +165,10 @@ IMAGE = {
         "one number from 0 to 1",
         (
             (lambda a, b: (a & b).sum() / (a | b).sum(), "This is Jaccard's index: it divides by the union."),
+            (
+                lambda a, b: 2 * (a & b).sum() / (a + b).sum(),
+                "For bool masks a + b means a | b, so what is shared counts once: use a.sum() + b.sum().",
+            ),
             (lambda a, b: (a & b).sum() / (a.sum() + b.sum()), "The factor 2 is missing: two equal masks must give 1."),
             (lambda a, b: (a & b).sum() / b.sum(), "This is the part of b that is found; Dice divides by both sizes."),
             (lambda a, b: (a == b).mean(), "This counts the air as agreement; use only voxels of the masks."),
@@ -133,6 +188,11 @@ IMAGE = {
             (lambda h, c, w: np.clip((h - c) / w, 0, 1) * 255, "The window starts at centre - width / 2."),
             (lambda h, c, w: np.clip((h - c + w / 2) / w, 0, 1), "This runs from 0 to 1; grey runs from 0 to 255."),
             (lambda h, c, w: 255 - _grey(h, c, w), "Black and white are swapped: bone should be bright."),
+            (_wrapped, "uint8 starts again at 0 after 255: clip first, then change the type."),
+            (
+                lambda h, c, w: _grey(h, c, 2 * w),
+                "This window is twice too wide: it reaches width / 2 to each side of the centre.",
+            ),
         ),
         (
             "Where is 0? At centre - width / 2.",
@@ -183,7 +243,15 @@ IMAGE = {
                 lambda p, n: float(np.median(np.diff(np.sort(p[:, 2])))),
                 "z is not the height of a tilted slice: project the positions on the normal.",
             ),
-            (lambda p, n: float(np.median(np.diff(p @ n))), "Files come in any order: sort the heights first."),
+            *(
+                (lambda p, n, f=f: np.median(f(np.diff(p @ n))), "Files come in any order: sort the heights first.")
+                for f in (np.positive, np.abs)
+            ),
+            (lambda p, n: np.median(abs(np.diff(p[:, 2]))), "Files come in any order: sort the heights first."),
+            (
+                lambda p, n: np.mean(np.diff(np.sort(p @ n))),
+                "A slice may be missing: its gap pulls the mean up, but not the median.",
+            ),
         ),
         (
             "The height of a slice is positions @ normal.",
@@ -195,16 +263,22 @@ IMAGE = {
     "2.1": Exercise(
         _parts,
         _largest,
-        different_pixels,
+        _bool_pixels,
         "voxels",
         0.0,
-        "a mask like the one given",
+        "a bool mask like the one given",
         (
             (lambda m: ndimage.label(m)[0] == 1, "Label 1 is the part that is met first, not the largest."),
             (
                 lambda m: ndimage.label(m)[0] == np.bincount(ndimage.label(m)[0].ravel()).argmax(),
                 "The largest label is 0, the background: leave it out of the count.",
             ),
+            (_largest_shifted, "bincount(...)[1:] begins with part 1: add 1 to its argmax."),
+            *(
+                (way, "This takes the largest part of each slice: label the whole mask once.")
+                for way in (_largest_of_slices, _largest_of_slices_with_bone)
+            ),
+            (_largest_over_corners, "Voxels that share only an edge or a corner are not connected here."),
             (lambda m: m, "Nothing was dropped."),
             (lambda m: ndimage.binary_opening(m), "Opening eats thin bone; label the parts and choose one."),
         ),
@@ -218,14 +292,28 @@ IMAGE = {
     "2.2": Exercise(
         _rings,
         _fill_small,
-        different_pixels,
+        _bool_pixels,
         "pixels",
         0.0,
-        "a mask like the one given",
+        "a bool mask like the one given",
         (
             (lambda m, a: ndimage.binary_fill_holes(m), "This fills the brain's place as well: fill only small holes."),
             (lambda m, a: m, "No hole was filled."),
-            (_fill_small_and_border, "What touches the border is outside, not a hole, however small it is."),
+            (
+                partial(_fill_small, borders=()),
+                "What touches the border is outside, not a hole, however small it is.",
+            ),
+            *((partial(_fill_small, borders=some), _BORDERS) for some in _SOME),
+            (
+                partial(_fill_small, structure=np.ones((3, 3))),
+                "Holes that share only a corner are two holes: label the background with 4 neighbours.",
+            ),
+            (lambda m, a: _fill_small(m, a - 1), "A hole of just max_pixels is filled as well: at most means <=."),
+            (
+                partial(_fill_small, shift=1),
+                "bincount(...)[1:] begins with label 1: each size went to the label before.",
+            ),
+            (_holes, "These are the holes alone: return the bone with them, mask | holes."),
             (
                 lambda m, a: ndimage.binary_closing(m, iterations=3),
                 "Closing also fills bays of the outline; label the holes.",

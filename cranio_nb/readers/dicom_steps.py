@@ -95,7 +95,8 @@ def _filled(stack: Stack, gone: list[int], wanted: NDArray[np.float64]) -> Findi
     """Which planes (of the stack, from below) stand on interpolated data only."""
     ranges = [(float(stack.heights[i]), float(stack.heights[i + 1])) for i in gone]
     planes = [k for k, h in enumerate(wanted) if any(a + 1e-3 < h < b - 1e-3 for a, b in ranges)]
-    message = f"{len(gone)} gaps of missing slices were filled by interpolation: do not design across them."
+    places = "1 place" if len(gone) == 1 else f"{len(gone)} places"
+    message = f"Missing slices were filled by interpolation at {places}: do not design across them."
     return Finding("GapsFilled", "warning", message, {"planes_from_below": planes, "heights_mm": ranges})
 
 
@@ -111,11 +112,11 @@ def _missing(stack: Stack, gone: list[int], gaps: NDArray[np.float64]) -> InputR
 
 
 def _numbering(stack: Stack) -> list[Finding]:
-    """A remark where slice numbers do not run from 1 without holes: slices may be missing at an end."""
+    """A remark where slice numbers do not run from 1 without holes: slices may be missing."""
     numbers = _numbers(stack)
     if not numbers or (numbers[0] in (0, 1) and numbers[-1] - numbers[0] == len(numbers) - 1):
         return []
-    message = f"{len(numbers)} slices are numbered from {numbers[0]} to {numbers[-1]}: some may be missing at an end."
+    message = f"{len(numbers)} slices are numbered from {numbers[0]} to {numbers[-1]}: some may be missing."
     values = {"first": numbers[0], "last": numbers[-1], "slices": len(numbers)}
     return [Finding("SliceNumbers", "warning", message, values)]
 

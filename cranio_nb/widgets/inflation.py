@@ -170,8 +170,10 @@ def balloon_view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     state = "at rest" if step == last and run.converged else "not at rest"
     moved = f"||dc|| = {run.change[step - 1]:.2g} px, " if step else ""
     k = f"k = {run.pressure.mean():.3g}" + (" on average" if np.ptp(run.pressure) > 1e-12 else "")
-    apex = run.curves[step][:, 1].max()
-    line = f"Step {step} of {last}, {state}: {moved}apex {apex:.1f} px above the chord of {scene.frame.length:.1f} px, "
+    low, apex = run.curves[step][:, 1].min(), run.curves[step][:, 1].max()
+    depth = f" and {-low:.1f} px below" if low < -0.05 else ""
+    chord = f"the chord of {scene.frame.length:.1f} px"
+    line = f"Step {step} of {last}, {state}: {moved}apex {apex:.1f} px above{depth} {chord}, "
     off = () if values["preset"] == PRESETS[0] else ("pressure",)
     return View(canvas.array(), line + f"{k}.", limits={"step": last}, off=off)
 

@@ -55,8 +55,9 @@ from cranio_nb.methods import slicewise
 # %% [markdown]
 # ## 1. The scan
 #
-# `classroom.load` makes a synthetic head with a hole, so you need no data and no network. A CT is a box of numbers in
-# **Hounsfield units** (HU): air is -1000, water 0, bone 300 and more.
+# `classroom.load` makes a synthetic head with a hole, so you need no data and no network. It is a simple head: skin,
+# skull and brain, without a face. A CT is a box of numbers in **Hounsfield units** (HU): air is -1000, water 0, bone
+# about 300 and more.
 #
 # *The switch:* `"class"` takes seconds; `"full"` is the size of the paper's scan (512 x 512 x 68);
 # `classroom.load(scan="path/to/your/scan")` takes your own (DICOM folder, NIfTI or NRRD).
@@ -68,15 +69,21 @@ print(f"{ct.shape} voxels (planes, rows, columns), {np.round(ct.spacing, 2)} mm 
 print(f"from {ct.voxels.min()} to {ct.voxels.max()} HU")
 
 # %% tags=["nbval-check-output"]
-widgets.ct_viewer(ct)
+viewer = widgets.ct_viewer(ct)
+viewer
 
 # %% [markdown]
-# *In a live notebook this picture has sliders; where no kernel runs it is a still.* The bright ring is the skull. Move
-# through the slices: somewhere the ring is open.
+# *In a live notebook this picture has sliders. Where yours has none, move it from a new cell:*
+# `viewer.set(plane=30)`. *Its controls are* `plane`, `centre` *and* `width`; lesson 01 explains the last two.
+#
+# The bright ring is the skull. Move through the slices: somewhere the ring is open. The letters are the patient's
+# sides: A front (anterior), P back (posterior), L left, R right. **L is at the right of the picture**, because
+# radiologists look at a slice from the feet.
 #
 # ## 2. Bone (stage 1)
 #
-# Everything from 400 HU up is bone. Then the couch and loose specks are dropped and small holes are closed.
+# Everything from 400 HU up is bone: we take the paper's 400 and not 300, and lesson 02 asks what difference it makes.
+# Then the couch and loose specks are dropped and small holes are closed.
 
 # %% tags=["nbval-check-output"]
 bone = segment.segment(ct, threshold=400)
@@ -98,24 +105,37 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 # In one slice the hole is a gap in a ring. At each end of the gap we take the direction in which the bone was going,
 # and let a curve bulge from one end to the other, like a rubber band with wind behind it: a **balloon**. One balloon
 # runs along the outside of the bone, one along the inside. Here is the outer one.
+#
+# The thin grey dashes are the **chord**, the straight line between the ends. The orange dashes are the curve that the
+# balloon starts from. It is made from the ends and their tangents and is a good guess already, so little is left to
+# inflate. The two plots at the right (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04 explains
+# them.
 
 # %% tags=["nbval-check-output"]
-plane = classroom.bridged_plane(bone, openings[0], skip=3, reach=10)
-seen = features.slice_features(bone.voxels[plane])
-outer, inner = features.gap_ends(seen, openings[0].opening.voxels[plane], skip=3, reach=10)
+# px along the bone: leave out the ragged first 3, fit the tangent to the next 10
+follow = {"skip": 3, "reach": 10}
+plane = classroom.bridged_plane(bone, openings[0], **follow)  # a slice with both ends
+seen = features.slice_features(bone.voxels[plane])  # the bone's boundary and middle line
+outer, inner = features.gap_ends(seen, openings[0].opening.voxels[plane], **follow)
+# any point in the head: the balloon must know which way is out
 inside = bone.to_voxel(openings[0].head_centre)[1:]
 player = widgets.balloon(outer, inside, background=bone.voxels[plane], px=case.px)
 player.set(preset="tangent pressure: k from the ends")
 
 # %% [markdown]
-# **Predict, then move, then explain.** What happens to the curve if you choose the preset *paper* (a fixed pressure),
-# and then make the pressure `k` negative? Say it first, then try.
+# **Predict, then move, then explain.** What happens to the curve if you choose the preset *paper* (the fixed pressure
+# k = 0.062), and then make the pressure `k` negative? Say it first, then try: with the controls, or in a new cell with
+#
+# - `player.set(preset="paper: k as set below")`
+# - `player.set(pressure=-0.1)`
 #
 # <details>
 # <summary>Answer</summary>
 #
-# The paper's pressure is the same for every gap, so here the curve comes out too flat or too round. With a negative
-# `k` the wind blows the other way and the curve sinks into the head. Lesson 04 tells which `k` fits and why.
+# The paper's pressure is the same for every gap, and for this one it is too weak: the curve comes out too flat, 3.8 px
+# high instead of 7.2. With k = -0.1 the wind blows the other way. The curve sinks below the chord, but its ends still
+# leave along their tangents and hold it, so it becomes a flat S: 0.6 px above the chord near one end and 2.8 px below
+# it further on. Lesson 04 tells which `k` fits and why.
 #
 # </details>
 #
@@ -147,7 +167,8 @@ alt = "A pale skull seen from its side; the hole is closed by the prosthesis, in
 view3d.show(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
 
 # %% [markdown]
-# *In a live notebook you can turn this head with the mouse.*
+# *In a live notebook you can turn this head with the mouse.* Its top is flat because the slices are 2.5 mm apart: the
+# highest slice with bone is a disc, and there is nothing between it and the next.
 #
 # That is the whole way: a scan went in, a solid came out. The rest of the course asks at each step: *why does this
 # work, when does it fail, and how do we know?*
@@ -167,7 +188,7 @@ segment.segment(ct, threshold=4000)
 # Ask for a hint: `check.exercise("0.1", volume_cm3, hint=1)`, then 2, then 3.
 #
 # **Exercise 0.1.** How much material does a prosthesis need? Write a function that takes a mask and the spacing of its
-# voxels in mm, and returns the volume in cm3.
+# voxels in mm (three numbers, which may all differ), and returns the volume in cm3.
 
 
 # %% tags=["solution"]
@@ -181,7 +202,8 @@ check.exercise("0.1", volume_cm3)
 
 # %% [markdown]
 # **Exercise 0.2.** Write Dice's coefficient: twice the number of voxels that two masks share, over the sum of their
-# sizes. Why twice? Because two equal masks should give 1.
+# sizes. Why twice? Because two equal masks should give 1. At least one of the two masks is not empty, so you never
+# divide by 0.
 
 
 # %% tags=["solution"]

@@ -23,6 +23,7 @@
 # **From the paper:** section 2, first paragraph, and Figure 1 (a).
 
 # %%
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -37,7 +38,8 @@ from data_synth import phantom_case, write_dicom
 # ## 1. A folder of files
 #
 # A CT series is a folder with one file for each slice. We write one for a synthetic head, with file names in
-# a random order, as scanners like to do. (*The switch:* set `folder` to a DICOM folder of your own.)
+# a random order, as scanners like to do. (*The switch:* for a DICOM folder of your own, put
+# `folder = Path("path/to/your/dicom")` in place of the first three lines. Your files are only read.)
 
 # %% tags=["nbval-check-output"]
 head = phantom_case("class")
@@ -46,26 +48,30 @@ write_dicom(folder, head.hu, head.affine, shuffle_names=True)
 files = sorted(folder.iterdir())
 one = pydicom.dcmread(files[0])
 print(f"{len(files)} files; the first holds slice at {one.ImagePositionPatient} mm")
-print(f"pixels {one.PixelSpacing} mm, {one.Rows} x {one.Columns}")
+print(
+    f"pixels {one.PixelSpacing} mm, {one.Rows} x {one.Columns}, {one.SliceThickness} mm thick"
+)
 
 # %% [markdown]
 # ## 2. Stored values and Hounsfield units
 #
 # The file stores integers. **HU = slope x stored + intercept.** Forget the intercept and all is 1024 too high: air
-# turns into bone. HU are anchored at water (0) and air (-1000); the paper gives bone as 400 to 1000, but dense bone
-# goes well past 1000, so this package sets no upper bound.
+# looks like water, water and brain look like bone. HU are anchored at water (0) and air (-1000); the paper gives bone
+# as 400 to 1000, but dense bone goes well past 1000, so this package sets no upper bound.
+#
+# The first file happens to hold a slice of the neck. It has no bone, so its HU end far below those of the whole scan.
 
 # %% tags=["nbval-check-output"]
 stored = one.pixel_array
+slope, intercept = one.RescaleSlope, one.RescaleIntercept
+hu = slope * stored + intercept
 print(
-    f"stored {stored.min()} to {stored.max()}, "
-    f"slope {one.RescaleSlope}, intercept {one.RescaleIntercept}"
+    f"this slice: stored {stored.min()} to {stored.max()}, slope {slope}, intercept {intercept}"
 )
+print(f"this slice: {hu.min():.0f} to {hu.max():.0f} HU")
 ct, report = read_ct(folder)
-print(
-    f"HU {ct.voxels.min()} to {ct.voxels.max()}, "
-    f"{ct.shape} voxels of {np.round(ct.spacing, 2)} mm"
-)
+print(f"all slices: {ct.voxels.min()} to {ct.voxels.max()} HU")
+print(f"{ct.shape} voxels of {np.round(ct.spacing, 2)} mm")
 
 # %% [markdown]
 # ## 3. Windowing
@@ -74,19 +80,20 @@ print(
 # all is black, above centre + width / 2 all is white.
 #
 # **Predict, then move, then explain.** Where do you put centre and width to see (a) only bone, (b) the brain against
-# the skin? Try it.
+# the skin? Try it, with the sliders or in a new cell with `viewer.set(centre=300, width=1500)` and your numbers.
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
-widgets.ct_viewer(case.ct)
+viewer = widgets.ct_viewer(case.ct)
+viewer
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
-# (a) A centre near 800 and a width near 800: everything soft goes black. (b) A centre near 40 and a width near 80:
-# brain (35 HU) and soft tissue (50 HU) part, all bone is plain white. The data are the same; only the map to grey
-# has changed.
+# (a) `viewer.set(centre=800, width=800)`: everything soft goes black. (b) `viewer.set(centre=40, width=80)`: brain
+# (35 HU) and soft tissue (50 HU) part, all bone is plain white. The picture is noisy, because the noise of the scan
+# (12 HU here) is now a good part of all greys. The data are the same; only the map to grey has changed.
 #
 # </details>
 #
@@ -107,18 +114,32 @@ print("voxel (10, 64, 64) lies at", np.round(ct.to_world([10, 64, 64]), 2), "mm"
 # Voxels are rarely cubes. Forget it, and the head is squashed:
 
 # %% tags=["nbval-check-output"]
-middle = ct.voxels[::-1, :, ct.shape[2] // 2]
+middle = ct.voxels[:, :, ct.shape[2] // 2]
 ratio = ct.spacing[0] / ct.spacing[1]
 fig, (wrong, right) = classroom.axes(2, height=3.0)
-look = {"cmap": "gray", "vmin": -700, "vmax": 1300}
+look = {"cmap": "gray", "vmin": -700, "vmax": 1300, "origin": "lower"}  # plane 0 at the bottom
 wrong.imshow(middle, aspect=1, **look)
 right.imshow(middle, aspect=ratio, **look)
 wrong.set(title="voxels drawn as squares", xlabel="row", ylabel="plane")
 right.set(title="in true proportion", xlabel="row", ylabel="plane")
-alt = "The same side view of a head twice: squashed to half its height, and in true proportion."
+alt = "The same side view of a head twice: squashed to a third of its height, and true."
 classroom.picture(fig, alt, f"one plane is as high as {ratio:.2f} rows")
 
 # %% [markdown]
+# How far apart are two slices? The **unit normal** is the direction at right angles to rows and columns, of length 1.
+# The **height** of a slice is how far it lies along it: height = position . normal. The difference of two heights is
+# the distance.
+
+# %% tags=["nbval-check-output"]
+across, down = np.array(one.ImageOrientationPatient, float).reshape(2, 3)
+normal = np.cross(across, down)
+position = np.array(one.ImagePositionPatient, float)
+print(f"normal {normal}, height of the first file's slice {position @ normal:.2f} mm")
+
+# %% [markdown]
+# Do not take `SliceThickness` for this distance. In our files both are 2.5 mm, but a scanner may measure slices 5 mm
+# thick every 2.5 mm, so that they overlap, or slices 1.25 mm thick every 2.5 mm, with gaps between them.
+#
 # ## 5. Breaking it
 #
 # What should a reader do with a folder that is not right? Three answers are possible: read it rightly, correct it and
@@ -145,30 +166,38 @@ for name, path in (("shuffled", folder), ("tilted", leaning)):
 # each other; the reader moves them back and says so. (c) See below: it is refused, because nobody can know what was
 # in the missing slice.
 #
+# *The numbers of (b).* The couch moves 2.5 mm from slice to slice, but the slices lean, so along their normal they are
+# 2.5 x cos 15 = 2.41 mm apart. The last slice is moved by 40.8 mm, which is 45.3 rows, so the box needs 46 more: 302
+# rows instead of 256. *Corners off* compares, for each slice, where its header puts the corners and where the finished
+# box has them: 0 means that no slice has lost its place.
+#
 # </details>
 #
 # ## A mistake to make once
 #
 # Files get lost when a folder is copied. A reader that takes `SliceThickness` for the distance and stacks what is there
-# would make the head 2.5 mm shorter, and the prosthesis too.
+# would make the head 2.5 mm shorter, and the prosthesis too. We lose a file of a copy, so that `folder` stays whole.
 
 # %% tags=["raises-exception"]
-by_height = {pydicom.dcmread(f).ImagePositionPatient[2]: f for f in folder.iterdir()}
+lossy = Path(tempfile.mkdtemp()) / "ct"
+shutil.copytree(folder, lossy)
+by_height = {pydicom.dcmread(f).ImagePositionPatient[2]: f for f in lossy.iterdir()}
 by_height[sorted(by_height)[20]].unlink()
-read_ct(folder)
+read_ct(lossy)
 
 # %% [markdown]
 # If you know what you do, you may allow it by name, and the report keeps it on record:
 
 # %% tags=["nbval-check-output"]
-volume, report = read_ct(folder, allow=["gap_fill"])
+volume, report = read_ct(lossy, allow=["gap_fill"])
 for finding in report.findings:
     print(f"{finding.severity}: {finding.message}")
 
 # %% [markdown]
 # ## Exercises
 #
-# **Exercise 1.1.** Windowing. Return grey levels from 0 to 255 (floats or integers).
+# **Exercise 1.1.** Windowing. Return grey levels from 0 to 255 (floats or integers): 0 at centre - width / 2 and below,
+# 255 at centre + width / 2 and above.
 
 
 # %% tags=["solution"]
@@ -182,14 +211,15 @@ def window(hu, centre, width):
 check.exercise("1.1", window)
 
 # %% tags=["expected"]
-fig, axes = classroom.axes(3, height=3.2)
-for ax, (name, centre, width) in zip(
-    axes, [("wide", 300, 2000), ("bone", 800, 800), ("brain", 40, 80)], strict=True
-):
+fig, axes = classroom.axes(3, height=3.6)
+windows = [("wide", 300, 2000), ("bone", 800, 800), ("brain", 40, 80)]
+for ax, (name, centre, width) in zip(axes, windows, strict=True):
     grey = window(case.ct.voxels[38].astype(float), centre, width)
     ax.imshow(grey, cmap="gray", vmin=0, vmax=255)
     ax.set(title=f"{name}: {centre} / {width} HU", xticks=[], yticks=[])
-alt = "One slice in three windows: skull and skin; bone alone; brain grey, bone white."
+alt = (
+    "One slice in three windows: skull and skin; bone alone; brain grey and noisy, bone white."
+)
 classroom.picture(fig, alt, "windows: wide, bone, brain")
 
 # %% [markdown]
@@ -207,7 +237,8 @@ check.exercise("1.2", to_world)
 
 # %% [markdown]
 # **Exercise 1.3.** The distance between slices. You get the positions (n, 3) of the slices in mm, in the order of the
-# files, and the unit normal of the slices. Return the (median) distance between neighbours.
+# files (any order), and the unit normal of the slices (section 4). Return the median distance between neighbours. Why
+# the median? One slice may be missing, and the others should not pay for it.
 
 
 # %% tags=["solution"]
