@@ -16,6 +16,7 @@ def lessons() -> None:
     \b
     Examples:
       cranio-nb lessons build
+      cranio-nb lessons html pages
       cranio-nb lessons grade handed_in/*/04_balloon.ipynb
     """
 
@@ -44,6 +45,22 @@ def build(folder: Path, only: str, check: bool) -> None:
         click.echo(problem, err=True)
     if problems:
         raise click.exceptions.Exit(1)
+
+
+@lessons.command()
+@click.argument("out", type=_PATH)
+@click.option("--folder", type=_PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+def html(out: Path, folder: Path) -> None:
+    r"""Write the lessons as web pages, every picture with its description; nothing is run.
+
+    \b
+    Example:
+      cranio-nb lessons html pages
+    """
+    from .lesson_pages import write_pages
+
+    for path in write_pages(folder, out):
+        click.echo(path)
 
 
 @lessons.command()
