@@ -9,7 +9,7 @@ from typing import Any
 
 from .errors import InputRefused
 
-METHODS = {"slicewise": "cranio_nb.methods.slicewise"}
+METHODS = {"slicewise": "cranio_nb.methods.slicewise", "thin-plate": "cranio_nb.methods.thin_plate"}
 """Name -> module with the door ``design(bone, lesions, *, progress, **options) -> Prosthesis``. A module that also has
 ``paper_options(bone)`` offers the preset "paper"."""
 
