@@ -15,6 +15,7 @@ METHODS = {
     "reflection": "cranio_nb.methods.reflection",
     "you": "cranio_nb.methods.you",
 }
+METHODS = {"slicewise": "cranio_nb.methods.slicewise", "thin-plate": "cranio_nb.methods.thin_plate"}
 """Name -> module with the door ``design(bone, lesions, *, progress, **options) -> Prosthesis``. A module that also has
 ``paper_options(bone)`` offers the preset "paper"."""
 

@@ -15,6 +15,7 @@ from cranio_nb.errors import NoOpening
 from cranio_nb.lesion import find
 from cranio_nb.mesh_check import check_mesh
 from cranio_nb.methods import hull, reflection, slicewise, you
+from cranio_nb.methods import slicewise, thin_plate
 from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
 from cranio_nb.volume import Volume, same_grid
 from data_synth import phantom_case, scan
@@ -43,6 +44,7 @@ class Method:
 
 METHODS = {
     "slicewise": Method(slicewise.design, lambda bone: {}, (0.93, 0.91, 0.88), mirror=0.95),
+    "thin-plate": Method(thin_plate.design, lambda bone: {}, (0.93, 0.91, 0.90), mirror=0.95),
     # its fixed pressure and 10 px of `skip` are made for other pixels; thinning is not symmetric
     "paper": Method(
         slicewise.design,

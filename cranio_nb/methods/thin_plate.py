@@ -6,8 +6,8 @@ other side of the skull has bone, and D^n all partial derivatives of order n on 
 
     sum w (g - f)^2 + a^4 |D^2 g|^2 + b^6 |D^3 g|^2 + c^4 sum v |D^2 (g - m)|^2 .
 
-Second order alone flattens a wide hole, third order carries the rim's curvature into it but also the rim's bumps; the
-mean of both wills errs less than either. The last term asks the plate to be curved as the other side is; it knows
+The second order pulls smoothed bone towards planes, the third towards quadrics, so that it carries the rim's curvature
+into the hole, but also the rim's bumps; both together err less than either. The last term asks the plate to be curved as the other side is; it knows
 nothing of where the other side lies, so an asymmetric head and a plane that is a little off leave no step at the rim.
 The lengths a, b, c (mm) say over what distance bone is smoothed; across the hole only their ratios matter. The weights
 w and v drop bone that does not belong to the vault, ridges, vessels and sinuses (Cauchy's weights, iterated). Each
@@ -44,7 +44,7 @@ _NODES = 2.0  # mm between the nodes of the plate
 _REACH = 35.0  # mm of bone beside the hole that the plate lies on
 _ROUNDS = 4  # of weighting
 _LEAST_SPREAD = 0.05  # mm: residuals below this are no outliers
-_FAINT = 1e-6  # weight that holds the plate to the mean radius where bone holds it nowhere
+_FAINT = 1e-10  # weight that holds the plate to the mean radius where bone holds it nowhere
 _LEAST_NODES = 12
 
 
