@@ -12,6 +12,7 @@ from skimage.draw import polygon
 from skimage.morphology import convex_hull_image
 
 from .curves import Points
+from .volume import Volume
 
 _EIGHT = np.ones((3, 3), bool)
 
@@ -109,3 +110,31 @@ def _span(hit: NDArray[np.bool_]) -> slice:
     """From the first to the last hit."""
     at = np.flatnonzero(hit)
     return slice(int(at[0]), int(at[-1]) + 1) if len(at) else slice(0, 0)
+    return labels == best
+
+
+def solid_piece(patch: NDArray[np.bool_], opening: Volume, bone: Volume, *, thinnest: float = 1.0) -> NDArray[np.bool_]:
+    """The piece of a patch that fills most of the opening, without slivers and enclosed pores.
+
+    Parameters
+    ----------
+    patch : ndarray of bool, shape (P, R, C)
+    opening : Volume
+        The lesion's coarse sheet.
+    bone : Volume
+        Bool mask on the same grid.
+    thinnest : float
+        mm: what is thinner is a film or a sliver.
+
+    Returns
+    -------
+    ndarray of bool, shape (P, R, C)
+        Nothing, where no piece reaches the opening.
+    """
+    solid = np.zeros_like(patch)
+    for box in ndimage.find_objects(patch.view(np.uint8)):
+        cube = np.ones(np.maximum(np.round(thinnest / bone.spacing), 1).astype(int), bool)
+        wide = ndimage.binary_opening(patch[box], cube)
+        if (wide & opening.voxels[box]).any():
+            solid[box] = ndimage.binary_fill_holes(main_piece(wide, opening.voxels[box])) & ~bone.voxels[box]
+    return solid

@@ -142,10 +142,10 @@ def find(bone: Volume, centre: Array) -> SymmetryPlane:
     seen = np.isfinite(surface.normals).all(axis=-1)
     points = surface.points[seen] - surface.eye
     normal, shift = _start(surface, points[::3])
-    for n_iter in range(1, _MAX_STEPS + 1):
+    n_iter, moved = 0, np.inf
+    while moved > _TOL and n_iter < _MAX_STEPS:
         normal, shift, moved = _step(surface, points, normal, shift)
-        if moved < _TOL:
-            break
+        n_iter += 1
     distances = _distances(surface, _reflected(points, normal, shift))[0]
     paired = np.isfinite(distances)
     if paired.sum() < _LEAST_PAIRS * np.count_nonzero(_polar(len(surface.radius)) <= _SKY):
@@ -154,7 +154,7 @@ def find(bone: Volume, centre: Array) -> SymmetryPlane:
             f"{paired.sum()} of the vault's rays have a counterpart on the other side; more of the skull is wanted.",
             "Use a scan of the whole vault, or a method that needs no symmetry.",
         )
-    return _described(bone, surface, normal, shift, float(np.median(np.abs(distances[paired]))), n_iter, moved < _TOL)
+    return _described(bone, surface, normal, shift, float(np.median(np.abs(distances[paired]))), n_iter, moved <= _TOL)
 
 
 def _described(
@@ -188,7 +188,7 @@ def _look(bone: Volume, eye: Array) -> _Surface:
 
 
 def _axes(bone: Volume) -> Array:
-    """Orthonormal left, back and up of the grid, as rows; planes that lean (gantry tilt) keep their rows and columns."""
+    """Orthonormal left, back and up of the grid, as rows; a gantry tilt is taken out of up."""
     up, back, left = bone.affine[:3, :3].T
     left = left / np.linalg.norm(left)
     back = back - (back @ left) * left
@@ -246,7 +246,7 @@ def _reflected(points: Array, normal: Array, shift: float) -> Array:
 
 
 def _distances(surface: _Surface, away: Array) -> tuple[Array, Array]:
-    """Signed distance (n,) of points seen from the eye (n, 3) from the surface, nan where it is not seen; its normals."""
+    """Signed distance (n,) of points (n, 3) seen from the eye from the surface, nan where unseen; its normals."""
     at = surface.locate(away)
     radius, *normal = (
         ndimage.map_coordinates(field, at, order=1, cval=np.nan)

@@ -55,10 +55,10 @@ METHODS = {
         nested=0.6,
         improves=False,
     ),
-    # a flat lid: the error is its sag, which finer voxels do not lessen; a wider hole's lid sags below a narrow one's
-    "hull": Method(hull.design, lambda bone: {}, (0.91, 0.71, 0.76), mirror=0.95, improves=False, nested=0.5),
+    # a flat lid: its error is its sag, which finer voxels do not lessen, and the lid of a wider hole lies deeper
+    "hull": Method(hull.design, lambda bone: {}, (0.91, 0.71, 0.76), mirror=0.95, improves=False, nested=0.9),
     "hull by slices": Method(
-        hull.design, hull.paper_options, (0.65, 0.69, 0.67), mirror=0.95, stray=6.0, improves=False, nested=0.5
+        hull.design, hull.paper_options, (0.78, 0.66, 0.66), mirror=0.95, stray=6.0, improves=False, nested=0.84
     ),
     "reflection": Method(reflection.design, lambda bone: {}, (0.94, 0.91, 0.92), mirror=0.95),
     # no head is symmetric, and finer voxels do not make it so

@@ -27,8 +27,6 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
-from skimage.draw import polygon2mask
-from skimage.morphology import convex_hull_image
 
 from .. import __version__, chart, fill, lesion, surface
 from ..chart import RadialChart
@@ -36,7 +34,7 @@ from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
 from ..volume import Volume
 
-_RAYS = 720  # around a slice
+_RAYS = 360  # around a slice
 _ISLAND = 4.0  # mm2: smaller pieces of a slice are dropped
 _ABOVE, _BELOW = 20.0, 60.0  # mm above and below the vault around the hole between which a hull may lie
 
@@ -128,7 +126,7 @@ def _in_space(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]]
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
     outer, inner = chart.thickened(vault, outer, inner)
     piece = chart.voxelise(vault, outer, inner, bone)
-    return HullDesign(one, vault, outer, inner), _solid(piece, one, bone)
+    return HullDesign(one, vault, outer, inner), fill.solid_piece(piece, one.opening, bone)
 
 
 def _hull_radius(vault: RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -158,15 +156,15 @@ def _by_slices(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]
     first, end = one.planes
     px = float(bone.spacing[1:].mean())
     near = ndimage.binary_dilation(one.opening.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
-    inside = np.rint(np.round(bone.to_voxel(one.head_centre)[1:], 6))  # a half falls the same way in every header
     cone = _cone(vault, bone)
     piece, entries = np.zeros(bone.shape, bool), []
     for plane in range(max(first - 2, 0), min(end + 2, bone.shape[0])):
-        filled, why = _slice(bone.voxels[plane], inside, near, _ISLAND / px**2)
-        piece[plane] = filled & cone[plane]
-        entries.append({"plane": plane, "status": "hull" if filled.any() else "skipped", "reason": why})
+        hits = _first_bone(bone.voxels[plane], bone.to_voxel(one.head_centre)[1:])
+        rim = _in_hole(vault, bone.to_world(np.insert(hits, 0, plane, axis=1)))
+        piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
+        entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
     nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(one, vault, nothing, nothing, tuple(entries)), _solid(piece, one, bone)
+    return HullDesign(one, vault, nothing, nothing, tuple(entries)), fill.solid_piece(piece, one.opening, bone)
 
 
 def _cone(vault: RadialChart, bone: Volume) -> NDArray[np.bool_]:
@@ -176,40 +174,58 @@ def _cone(vault: RadialChart, bone: Volume) -> NDArray[np.bool_]:
 
 
 def _slice(
-    bone: NDArray[np.bool_], inside: NDArray[np.float64], near: NDArray[np.bool_], min_area: float
+    bone: NDArray[np.bool_],
+    cone: NDArray[np.bool_],
+    hits: NDArray[np.float64],
+    rim: NDArray[np.bool_],
+    near: NDArray[np.bool_],
+    min_area: float,
 ) -> tuple[NDArray[np.bool_], str]:
-    """What the hulls of a slice leave, and of which kind the slice is."""
-    row, col = inside.astype(int)
-    hits = _first_bone(bone, inside)
-    if len(hits) < 3:
-        return np.zeros_like(bone), "no ring of bone in this slice"
-    outside, _ = ndimage.label(~np.pad(bone, 1))
-    if outside[row + 1, col + 1] not in (0, outside[0, 0]):
-        return fill.partial_loss(bone, min_area=min_area, region=near), "closed ring"
-    cavity = polygon2mask(bone.shape, hits[ConvexHull(hits).vertices])
-    return convex_hull_image(bone) & ~cavity & ~bone, "open ring"
+    """What the hulls of a slice leave in the hole's cone, and of which kind the slice is.
+
+    `hits` (n, 2) are where rays from inside first meet bone; those on the `rim` meet its cut face, not the cavity's
+    wall.
+    """
+    nothing = np.zeros_like(bone)
+    if not cone.any():
+        return nothing, "outside the hole"
+    if len(hits) == _RAYS:
+        return fill.partial_loss(bone, min_area=min_area, region=near) & cone, "closed ring"
+    hits = hits[~rim]
+    if len(hits) < _RAYS / 2:  # their hull may not hold the inside
+        return nothing, "no ring of bone in this slice"
+    pixels = np.argwhere(cone)
+    plate = pixels[_in_hull(pixels, np.argwhere(bone), 0.5) & ~_in_hull(pixels, hits, -0.5)]
+    nothing[tuple(plate.T)] = True
+    return nothing, "open ring"
+
+
+def _in_hole(vault: RadialChart, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which world points (n, 3) are seen in the directions of the hole, shape (n,)."""
+    at = np.rint(vault.locate(points - vault.eye)).astype(np.intp)
+    known = ((at >= 0) & (at < len(vault.hole))).all(axis=0)
+    v, u = np.where(known, at, 0)
+    return vault.hole[v, u] & known
+
+
+def _in_hull(pixels: NDArray, points: NDArray, beyond: float) -> NDArray[np.bool_]:
+    """Which pixels (n, 2) lie in the convex hull of points (m, 2), or at most `beyond` px outside it.
+
+    Bone ends half a pixel beyond the centres of its pixels, and the cavity half a pixel before them.
+    """
+    sides = ConvexHull(points).equations
+    return (pixels @ sides[:, :2].T + sides[:, 2] <= beyond + 1e-6).all(axis=1)
 
 
 def _first_bone(bone: NDArray[np.bool_], inside: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where rays from a point inside a slice first meet bone, slice (row, col), shape (n, 2)."""
     angles = np.linspace(0, 2 * np.pi, _RAYS, endpoint=False)
     steps = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
-    lengths = np.arange(1.0, np.hypot(*bone.shape))
+    lengths = np.arange(1.0, np.hypot(*bone.shape) / 2)
     points = inside + steps[:, None] * lengths[:, None]
-    index = np.rint(points).astype(int)
+    index = np.rint(np.round(points, 6)).astype(int)  # a half falls the same way in every header
     known = ((index >= 0) & (index < bone.shape)).all(axis=-1)
     row, col = np.moveaxis(np.where(known[..., None], index, 0), -1, 0)
     hit = bone[row, col] & known
     rays = np.flatnonzero(hit.any(axis=1))
     return points[rays, hit[rays].argmax(axis=1)]
-
-
-def _solid(piece: NDArray[np.bool_], one: Lesion, bone: Volume) -> NDArray[np.bool_]:
-    """The piece of a patch that fills most of the opening, without enclosed pores; nothing if none reaches it."""
-    solid = np.zeros_like(piece)
-    if not (piece & one.opening.voxels).any():
-        return solid
-    for box in ndimage.find_objects(piece.view(np.uint8)):
-        main = fill.main_piece(piece[box], one.opening.voxels[box])
-        solid[box] = ndimage.binary_fill_holes(main) & ~bone.voxels[box]
-    return solid

@@ -10,13 +10,13 @@ image has no bone either, because the defect crosses the plane or has a partner,
 
 Faithful: mirror, subtract, keep the piece in the hole. Ours: the plane is found and not clicked, the surface is smooth
 between voxels, the edge ends with the bone's own surface, the part that cannot be copied is refused or left out. Also
-ours is `fit_rim`, which `paper_options` turn off: no head is symmetric, so the mirrored radii m leave a step at the rim.
-The difference d = r - m to the bone's own radii r is known around the hole; with
+ours is `fit_rim`, which `paper_options` turn off: no head is symmetric, so the mirrored radii m leave a step at the
+rim. The difference d = r - m to the bone's own radii r is known around the hole; with
 
-    sum over known rays (g - d)^2 + h^4 sum (laplacian g)^2 + h^4 / l^2 sum |grad g|^2 -> min
+    sum over known rays (g - d)^2 + s^4 sum (laplacian g)^2 + s^4 / l^2 sum |grad g|^2 -> min
 
-(h = 2 mm, l = 10 mm) it is continued across the hole like a plate under tension: with its slope at first, which the
-tension takes away further in than l, where the rim knows nothing any more; and m + g meets the rim.
+(s = 2 mm or two voxels, l = 10 mm) it is continued across the hole like a plate under tension: with its slope at
+first, which the tension takes away further in than l, where the rim knows nothing any more; and m + g meets the rim.
 """
 
 from __future__ import annotations
@@ -39,8 +39,10 @@ from ..symmetry import SymmetryPlane
 from ..volume import Volume
 
 _TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
+_TIP = 2.0  # mm: narrower ends of a possible part are left out
 _RING = 15.0  # mm of bone around the hole that the mirror image is fitted to
 _COARSE = 2.0  # mm between the points the difference is solved at: it is smooth
+_SMOOTH = 2.0  # mm, or two voxels: shorter waves of the difference are noise
 _TENSION = 10.0  # mm over which the slope of the difference at the rim goes on into the hole
 _OUTLIER = 1.0  # mm: a difference larger than its surroundings by this counts half
 
@@ -131,7 +133,8 @@ def design(
     patch = np.zeros(bone.shape, bool)
     for part in made:
         if np.isfinite(part.outer).any():
-            patch |= _piece(part, bone)
+            piece = chart.voxelise(part.own, part.outer, part.inner, bone)
+            patch |= fill.solid_piece(piece, part.lesion.opening, bone)
     if not patch.any():
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
     tell("surface", 0.9)
@@ -172,20 +175,14 @@ def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) ->
     known = np.isfinite(image.outer) & ~image.hole
     outer, inner = (_extended(r, known) for r in (image.outer, image.inner))
     if fit_rim:
-        outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan))
-        inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan))
+        finest = max(_SMOOTH, 2 * float(bone.spacing.max()))
+        outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
+        inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
     made = MirroredDesign(one, plane, own, image, outer, inner)
-    keep = own.hole if made.lost <= _TOLERATED else own.hole & ~image.hole
+    keep = own.hole
+    if made.lost > _TOLERATED:
+        keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / own.mm)))
     return replace(made, outer=np.where(keep, outer, np.nan), inner=np.where(keep, inner, np.nan))
-
-
-def _piece(part: MirroredDesign, bone: Volume) -> NDArray[np.bool_]:
-    """Voxels of the prosthesis of one hole: in one piece, without enclosed pores."""
-    piece = chart.voxelise(part.own, part.outer, part.inner, bone)
-    for box in ndimage.find_objects(piece.view(np.uint8)):
-        main = fill.main_piece(piece[box], part.lesion.opening.voxels[box])
-        piece[box] = ndimage.binary_fill_holes(main) & ~bone.voxels[box]
-    return piece
 
 
 def _extended(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
@@ -194,15 +191,19 @@ def _extended(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[
     return values[tuple(nearest)]
 
 
-def _difference(own: RadialChart, difference: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What the mirror image lacks to the bone around the hole, continued smoothly across it, shape (M, M), mm."""
+def _difference(own: RadialChart, difference: NDArray[np.float64], smooth: float) -> NDArray[np.float64]:
+    """What the mirror image lacks to the bone around the hole, continued smoothly across it, shape (M, M), mm.
+
+    Waves shorter than `smooth` mm are taken for noise.
+    """
     skip = max(1, round(_COARSE / own.mm))
+    step = skip * own.mm
     away = ndimage.distance_transform_edt(~own.hole)[::skip, ::skip] * own.mm
     area = away <= _RING
     target = difference[::skip, ::skip]
     known = area & (away > 0) & np.isfinite(target)
     bend = _laplacian(area)
-    energy = bend @ bend + (skip * own.mm / _TENSION) ** 2 * bend
+    energy = (smooth / step) ** 4 * (bend @ bend + (step / _TENSION) ** 2 * bend)
     data, weight = np.where(known, target, 0.0)[area], known[area].astype(float)
     for _ in range(5):
         solved = splu((energy + sparse.diags_array(weight)).tocsc()).solve(weight * data)
