@@ -26,8 +26,8 @@ from .run import check_request, design_for
 from .volume import Volume
 
 STATUSES = ("done", "refused", "no patch", "broken")
-"""How a trial ended: with a prosthesis; with a refusal of the method to serve this input; without anything to close
-or bridged; by a fault of the program or a lack of memory."""
+"""How a trial ended: with a prosthesis; with a refusal of the method to serve this input; without anything bridged,
+or with a patch that runs out of the image; by a fault of the program or a lack of memory."""
 
 
 @dataclass(frozen=True)
@@ -187,6 +187,7 @@ def _child(folder: str, affine: Any, centres: list[Any], contender: Contender) -
 
 
 def _status(error: CranioError) -> str:
-    if isinstance(error, NoOpening):
+    # the openings lie inside the image, as was seen before; a patch that does not is the method's failure
+    if isinstance(error, NoOpening) or error.code == "OpeningLeavesImage":
         return "no patch"
     return "refused" if isinstance(error, InputRefused) else "broken"

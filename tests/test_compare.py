@@ -197,6 +197,17 @@ class TestContenders:
             contenders([name])
 
 
+def test_a_patch_that_runs_out_of_the_image_is_a_failure_and_no_refusal(case, monkeypatch):
+    def leaking(bone, lesions=None, *, progress=None):
+        patch = np.zeros(bone.shape, bool)
+        patch[-1] = True
+        return Prosthesis(extract(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking")
+
+    monkeypatch.setitem(STAND_INS, "perfect", leaking)
+    with only_stand_ins():
+        assert attempt(case.bone, case.lesions, Contender("perfect")).status == "no patch"
+
+
 class TestApart:
     def test_is_the_same_design_and_does_not_count_what_this_process_holds(self, case):
         here = attempt(case.bone, case.lesions, Contender("slicewise", "paper"))
