@@ -11,6 +11,7 @@ from .errors import InputRefused
 
 METHODS = {
     "slicewise": "cranio_nb.methods.slicewise",
+    "dnurbs": "cranio_nb.methods.dnurbs",
     "you": "cranio_nb.methods.you",
 }
 """Name -> module with the door ``design(bone, lesions, *, progress, **options) -> Prosthesis``. A module that also has
