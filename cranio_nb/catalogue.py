@@ -13,6 +13,7 @@ METHODS = {
     "slicewise": "cranio_nb.methods.slicewise",
     "hull": "cranio_nb.methods.hull",
     "reflection": "cranio_nb.methods.reflection",
+    "dnurbs": "cranio_nb.methods.dnurbs",
     "you": "cranio_nb.methods.you",
 }
 METHODS = {"slicewise": "cranio_nb.methods.slicewise", "thin-plate": "cranio_nb.methods.thin_plate"}

@@ -6,16 +6,18 @@ Frame: any; lengths in mm. Parameters (v, u) run from 0 to the number of spans e
 
 with cubic B-splines on clamped uniform knots. The energy is the thin plate under tension
 
-    E = 1/2 int a11 |s_v|^2 + a22 |s_u|^2 + b11 |s_vv|^2 + b12 |s_vu|^2 + b22 |s_uu|^2
-        + 1/2 sum_i k_i |d_i - s(v_i, u_i)|^2
+    E = 1/2 int a11 |t_v|^2 + a22 |t_u|^2 + b11 |t_vv|^2 + b12 |t_vu|^2 + b22 |t_uu|^2
+        + 1/2 sum_i k_i |d_i - s(v_i, u_i)|^2,    t = s - s0,
 
-of Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric design", IEEE TVCG 2(1). With weights
-frozen at 1 the surface is linear in its control points, the energy quadratic, and its least found by one sparse solve.
+of Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric design", IEEE TVCG 2(1), with a natural
+shape s0 that is free of stress, as elastic bodies have one (Terzopoulos et al. 1987); with s0 = 0 it is theirs. With
+weights frozen at 1 the surface is linear in its control points, the energy quadratic, and its least found by one
+sparse solve.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +27,7 @@ from scipy.sparse.linalg import spsolve
 
 _DEGREE = 3
 _GAUSS = 4  # points a span: exact for products of two cubics
+_LEAST_DOUBT = 0.3  # mm off the sheet that no spring is weakened for
 
 VALUE, BY_V, BY_U, BY_VV, BY_VU, BY_UU = (0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)
 STRAINS = (BY_V, BY_U, BY_VV, BY_VU, BY_UU)
@@ -181,20 +184,48 @@ def _grams(spans: int) -> list[sparse.csr_array]:
     return [sparse.csr_array(part.T @ sparse.diags_array(w) @ part) for part in parts]
 
 
-def settle(springs: Springs, spans: tuple[int, int], material: Material) -> Sheet:
+def settle(springs: Springs, natural: Sheet, material: Material, *, rounds: int = 0) -> tuple[Sheet, Springs]:
     """The sheet of least energy with weights frozen at 1.
 
     Parameters
     ----------
     springs : Springs
-        Enough to hold the sheet: no three of them in a line when there is no tension.
-    spans : tuple of int
-        Along v and u.
+        Enough to hold the sheet: not all of them on one line when there is no tension.
+    natural : Sheet
+        The shape without stress; weights all 1.
     material : Material
+    rounds : int
+        How often springs that stay far off the sheet are weakened and the sheet settles anew: a spring keeps half its
+        strength at three standard deviations, these taken from the median.
+
+    Returns
+    -------
+    sheet : Sheet
+    springs : Springs
+        With their last strengths.
     """
-    places = tensor(springs.v, springs.u, spans, VALUE)
-    pull = places.T @ sparse.diags_array(springs.strength)
-    system = sparse.csc_array(stiffness(spans, material) + pull @ places)
-    control = spsolve(system, pull @ springs.points, permc_spec="MMD_AT_PLUS_A")
+    places = tensor(springs.v, springs.u, natural.spans, VALUE)
+    bent, rest = stiffness(natural.spans, material), natural.control.reshape(-1, 3)
+    pulled, strength = springs.points - places @ rest, springs.strength
+    change = _solved(places, strength, bent, pulled)
+    for _ in range(rounds):
+        off = np.linalg.norm(pulled - places @ change, axis=1)
+        limit = max(3 * 1.4826 * float(np.median(off)), _LEAST_DOUBT)
+        strength = springs.strength / (1 + (off / limit) ** 2)
+        change = _solved(places, strength, bent, pulled)
+    control = (rest + change).reshape(natural.control.shape)
+    return Sheet(control, np.ones_like(natural.weights)), replace(springs, strength=strength)
+
+
+def flat(spans: tuple[int, int]) -> Sheet:
+    """A sheet shrunk to one point: the natural shape of one that wants to be plane."""
     shape = (spans[0] + _DEGREE, spans[1] + _DEGREE)
-    return Sheet(np.asarray(control).reshape(*shape, 3), np.ones(shape))
+    return Sheet(np.zeros((*shape, 3)), np.ones(shape))
+
+
+def _solved(
+    places: sparse.csr_array, strength: NDArray, bent: sparse.csr_array, pulled: NDArray
+) -> NDArray[np.float64]:
+    """Control points, shape (n m, 3), that balance springs and bending."""
+    pull = places.T @ sparse.diags_array(strength)
+    return np.asarray(spsolve(sparse.csc_array(bent + pull @ places), pull @ pulled, permc_spec="MMD_AT_PLUS_A"))

@@ -8,10 +8,11 @@ s = J q, Lagrange's equations of Qin and Terzopoulos 1996 are
     M q'' + D q' + K q = f + g,    M = mu int J^T J,   D = gamma int J^T J,
     K = int a11 J_v^T J_v + a22 J_u^T J_u + b11 J_vv^T J_vv + b12 J_vu^T J_vu + b22 J_uu^T J_uu,
 
-where f are the springs, and the integrals are sums over Gauss points. A step is implicit in the velocities, the elastic
-forces and the springs. Ours: g, the force that comes from the change of J in time, is left out (it vanishes with
-frozen weights, and at rest); weak springs hold free weights at 1, because a common factor of all weights changes
-nothing; and a step that would raise the energy or make a weight negative starts anew at rest with half the time.
+where f are the springs, and the integrals are sums over Gauss points. A step is implicit in the velocities, the
+elastic forces and the springs. Ours: a natural shape, whose derivatives are taken off the sheet's own; g, the force
+that comes from the change of J in time, is left out (it vanishes with frozen weights, and at rest); weak springs hold
+free weights at 1, because a common factor of all weights changes nothing; and a step that would raise the energy or
+make a weight negative starts anew at rest with half the time.
 """
 
 from __future__ import annotations
@@ -56,6 +57,23 @@ class Dynamics:
 
 
 @dataclass(frozen=True, eq=False)
+class Setting:
+    """What acts on a sheet.
+
+    Parameters
+    ----------
+    springs : Springs
+    natural : Sheet
+        The shape without stress, of as many spans.
+    material : Material
+    """
+
+    springs: Springs
+    natural: Sheet
+    material: Material
+
+
+@dataclass(frozen=True, eq=False)
 class Motion:
     """A sheet on its way.
 
@@ -83,16 +101,15 @@ class Motion:
     converged: bool = False
 
 
-def start(sheet: Sheet, springs: Springs, material: Material, dynamics: Dynamics) -> Motion:
+def start(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> Motion:
     """A sheet held still, about to be let go."""
     still = np.zeros(len(_coordinates(sheet, dynamics.free_weights)))
-    return Motion(sheet, still, potential(sheet, springs, material, dynamics))
+    return Motion(sheet, still, potential(sheet, setting, dynamics))
 
 
 def relax(
     motion: Motion,
-    springs: Springs,
-    material: Material,
+    setting: Setting,
     dynamics: Dynamics,
     *,
     tol: float = 1e-3,
@@ -105,7 +122,7 @@ def relax(
     ----------
     motion : Motion
         From `start`, or an earlier one to go on with.
-    springs, material, dynamics
+    setting, dynamics
         What acts on it.
     tol : float
         Rest is when no control point moves farther than this in a step.
@@ -115,7 +132,7 @@ def relax(
         Called with the motion after each step, for drawing.
     """
     for _ in range(max_iter):
-        motion = step(motion, springs, material, dynamics)
+        motion = step(motion, setting, dynamics)
         motion = replace(motion, converged=motion.moved <= tol)
         if iter_callback is not None:
             iter_callback(motion)
@@ -124,17 +141,17 @@ def relax(
     return motion
 
 
-def step(motion: Motion, springs: Springs, material: Material, dynamics: Dynamics) -> Motion:
+def step(motion: Motion, setting: Setting, dynamics: Dynamics) -> Motion:
     """One step of the motion, shortened where it must be.
 
     Parameters
     ----------
     motion : Motion
-    springs, material, dynamics
+    setting, dynamics
         What acts on it.
     """
     sheet, free = motion.sheet, dynamics.free_weights
-    matter, elastic, force = _forces(sheet, springs, material, dynamics)
+    matter, elastic, force = _forces(sheet, setting, dynamics)
     q, velocity, dt = _coordinates(sheet, free), motion.velocity, dynamics.dt
     while dt > _SHORTEST * dynamics.dt:
         inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * matter
@@ -143,7 +160,7 @@ def step(motion: Motion, springs: Springs, material: Material, dynamics: Dynamic
         new = _with_coordinates(sheet, q + change, free)
         if new.weights.min() > _LIGHTEST:
             speed = change / dt
-            energy = potential(new, springs, material, dynamics) + dynamics.mass / 2 * float(speed @ (matter @ speed))
+            energy = potential(new, setting, dynamics) + dynamics.mass / 2 * float(speed @ (matter @ speed))
             if energy <= motion.energy * (1 + 1e-12):
                 moved = float(np.linalg.norm(new.control - sheet.control, axis=-1).max())
                 return Motion(new, speed, energy, moved, motion.n_iter + 1)
@@ -151,13 +168,13 @@ def step(motion: Motion, springs: Springs, material: Material, dynamics: Dynamic
     return replace(motion, moved=0.0, n_iter=motion.n_iter + 1)
 
 
-def potential(sheet: Sheet, springs: Springs, material: Material, dynamics: Dynamics) -> float:
+def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
     """Elastic energy of a sheet and of the springs."""
     v, u, weight = _quadrature(sheet)
-    shape = derivatives(sheet, v, u)
+    shape, natural, springs = derivatives(sheet, v, u), derivatives(setting.natural, v, u), setting.springs
     elastic = sum(
-        factor * float(weight @ (shape[d] ** 2).sum(axis=1))
-        for factor, d in zip(material.stiffness, STRAINS, strict=True)
+        factor * float(weight @ ((shape[d] - natural[d]) ** 2).sum(axis=1))
+        for factor, d in zip(setting.material.stiffness, STRAINS, strict=True)
     )
     pulled = float(springs.strength @ ((springs.points - sheet.at(springs.v, springs.u)) ** 2).sum(axis=1))
     held = dynamics.hold * float(((sheet.weights - 1) ** 2).sum()) if dynamics.free_weights else 0.0
@@ -227,25 +244,25 @@ def _quotients(sheet: Sheet, v: NDArray, u: NDArray) -> dict[Pair, sparse.csr_ar
 
 
 def _forces(
-    sheet: Sheet, springs: Springs, material: Material, dynamics: Dynamics
+    sheet: Sheet, setting: Setting, dynamics: Dynamics
 ) -> tuple[sparse.csr_array, sparse.csr_array, NDArray[np.float64]]:
     """Int J^T J; the stiffness of the sheet and the springs; and the force of both at the sheet's place."""
-    free = dynamics.free_weights
+    free, springs = dynamics.free_weights, setting.springs
     v, u, weight = _quadrature(sheet)
     parts = jacobians(sheet, v, u, free)
-    matter = _gram(parts[VALUE], weight)
-    q = _coordinates(sheet, True) if free else _coordinates(sheet, False)
-    stiff = sum(f * _gram(parts[d], weight) for f, d in zip(material.stiffness, STRAINS, strict=True))
-    places = jacobians(sheet, springs.v, springs.u, free)[VALUE]
-    pull = places.T @ sparse.diags_array(np.tile(springs.strength, 3))
-    gap = (springs.points - sheet.at(springs.v, springs.u)).T.ravel()
-    force = pull @ gap - stiff @ q
-    elastic = stiff + pull @ places
+    shape, natural = derivatives(sheet, v, u), derivatives(setting.natural, v, u)
+    pull = jacobians(sheet, springs.v, springs.u, free)[VALUE]
+    strength = np.tile(springs.strength, 3)
+    elastic = pull.T @ sparse.diags_array(strength) @ pull
+    force = pull.T @ (strength * (springs.points - sheet.at(springs.v, springs.u)).T.ravel())
+    for factor, d in zip(setting.material.stiffness, STRAINS, strict=True):
+        elastic = elastic + factor * _gram(parts[d], weight)
+        force = force - factor * (parts[d].T @ (weight * (shape[d] - natural[d]).T).ravel())
     if free:
-        held = np.zeros(len(q))
-        held[-sheet.weights.size :] = dynamics.hold
-        force, elastic = force - held * (q - 1), elastic + sparse.diags_array(held)
-    return matter, sparse.csr_array(elastic), force
+        held = np.repeat([0.0, dynamics.hold], [3 * sheet.weights.size, sheet.weights.size])
+        force = force - held * (_coordinates(sheet, True) - 1)
+        elastic = elastic + sparse.diags_array(held)
+    return _gram(parts[VALUE], weight), sparse.csr_array(elastic), force
 
 
 def _gram(part: sparse.csr_array, weight: NDArray) -> sparse.csr_array:

@@ -30,6 +30,9 @@ STAGES = {
 # stage 2 for real skulls, and whom each may see
 VAULT = {"casting": set(), "chart": {"casting"}, "symmetry": set(), "rays": set(), "slicing": {"chart", "rays"}}
 CORE = NOUNS | MESH_WORK | STAGES | set(VAULT)
+VAULT = {"chart": set(), "rays": set(), "slicing": {"chart", "rays"}}  # stage 2 for real skulls, and whom each may see
+SHEETS = {"sheet": set(), "sheet_motion": {"sheet"}}  # elastic surfaces
+CORE = NOUNS | MESH_WORK | set(SHEETS) | STAGES | set(VAULT)
 OWNERS = {"matplotlib": {"plot"}, "pyvista": {"view3d"}, "ipywidgets": {"widgets.live"}}
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
 
@@ -72,6 +75,8 @@ def allowed(name):
         return NOUNS | MESH_WORK
     if room in VAULT:
         return NOUNS | VAULT[room]
+    if room in SHEETS:
+        return NOUNS | SHEETS[room]
     if room in STAGES:
         return NOUNS | MESH_WORK
     if room == "methods":

@@ -16,6 +16,7 @@ from cranio_nb.lesion import find
 from cranio_nb.mesh_check import check_mesh
 from cranio_nb.methods import hull, reflection, slicewise, you
 from cranio_nb.methods import slicewise, thin_plate
+from cranio_nb.methods import dnurbs, slicewise, you
 from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
 from cranio_nb.volume import Volume, same_grid
 from data_synth import phantom_case, scan
@@ -65,6 +66,7 @@ METHODS = {
     "reflection as it is": Method(
         reflection.design, reflection.paper_options, (0.92, 0.88, 0.90), mirror=0.95, improves=False
     ),
+    "dnurbs": Method(dnurbs.design, lambda bone: {}, (0.94, 0.92, 0.93), mirror=0.95),
     # a flat fill: the wider the hole, the deeper it sinks under the vault, whatever the voxels
     "you": Method(you.design, lambda bone: {}, (0.77, 0.53, 0.58), mirror=0.85, stray=8.0, nested=0.75, improves=False),
 }

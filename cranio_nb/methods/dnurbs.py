@@ -5,12 +5,15 @@ design", IEEE TVCG 2(1). Faithful are the rational surface, its control points a
 the thin plate under tension, the springs to data, and Lagrange's equations (`sheet`, `sheet_motion`).
 
 Ours is what makes a prosthesis of it. The vault around the hole is seen along rays (`chart`); every ray that meets
-sound bone is a spring from the bone's outer surface to the place of that ray on the outer sheet, and so inside. Springs far
-off the sheet are weakened, so that a suture or a ridge does not dent it. The bending rigidity follows from a
+sound bone is a spring from the bone's outer surface to the place of that ray on the outer sheet, and so inside.
+Springs far off the sheet are weakened, so that a suture or a ridge does not dent it. The rigidity follows from a
 wavelength l: with one spring for each ray, a ripple of the bone of wavelength l is halved, shorter ones vanish,
 longer ones pass:
 
     rigidity = k (l / (2 pi))^4,    k the springs' strength per mm2.
+
+A plate that wants to be plane fills a wide hole too flat. So the natural shape of each sheet, free of stress, is the
+sphere that fits its springs best, and bending is counted from there.
 
 The sheets at rest are read along the rays again; between them lies the patch. With weights frozen at 1, the default,
 rest is found at once by a sparse solve. With `free_weights` the sheet moves from there to its own rest by steps
@@ -21,7 +24,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -32,12 +35,11 @@ from .. import __version__, chart, fill, lesion, sheet, sheet_motion, surface
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
 from ..sheet import Material, Sheet, Springs
-from ..sheet_motion import Dynamics
+from ..sheet_motion import Dynamics, Motion, Setting
 from ..volume import Volume
 
 _ROUNDS = 5  # of weakening springs and settling again
-_DOUBTED = 3.0  # standard deviations off the sheet at which a spring keeps a tenth of its strength
-_LEAST_DOUBT = 0.1  # mm: what the reading of a radius is off at least
+_SPHERE_ROUNDS = 8  # of fitting the sphere to what is not far off it
 _FIND_STEPS = 6  # of looking up where a ray meets the sheet
 
 
@@ -51,10 +53,8 @@ class Sheets:
         The bone around the hole.
     outer, inner : Sheet
         At rest, in mm along the chart's axes from its eye.
-    springs : tuple of Springs
-        Outer and inner, in the same frame, their last strengths.
-    material : Material
-        Of both.
+    settings : tuple of Setting
+        Springs with their last strengths, natural shape and material of the outer and the inner sheet, same frame.
     n_iter : tuple of int
         Steps of the outer and the inner sheet; 0 where one solve was enough.
     converged : tuple of bool
@@ -64,8 +64,7 @@ class Sheets:
     vault: chart.RadialChart
     outer: Sheet
     inner: Sheet
-    springs: tuple[Springs, Springs]
-    material: Material
+    settings: tuple[Setting, Setting]
     n_iter: tuple[int, int]
     converged: tuple[bool, bool]
 
@@ -74,7 +73,7 @@ def design(
     bone: Volume,
     lesions: Sequence[Lesion] | None = None,
     *,
-    wavelength: float = 30.0,
+    wavelength: float = 20.0,
     tension: float = 0.0,
     span: float = 8.0,
     free_weights: bool = False,
@@ -120,15 +119,15 @@ def design(
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
     lesions = lesion.find(bone) if lesions is None else lesions
-    dynamics = Dynamics(dt=1.0, mass=0.0, damping=1.0, free_weights=True)
-    motion = {"dynamics": dynamics, "tol": tol, "max_iter": max_iter} if free_weights else {}
+    dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
+    plate = {"wavelength": wavelength, "tension": tension, "span": span}
     working, patch = [], np.zeros(bone.shape, bool)
     for i, one in enumerate(lesions):
         tell("sheets", 0.9 * i / len(lesions))
-        made = fit(chart.look(bone, one), wavelength=wavelength, tension=tension, span=span, **motion)
+        made = fit(chart.look(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
         piece = chart.voxelise(made.vault, *chart.thickened(made.vault, *radii), bone)
-        patch |= fill.main_piece(piece, one.opening.voxels)
+        patch |= _main_piece(piece, one.opening.voxels)
         working.append(made)
     if not patch.any():
         raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")
@@ -166,20 +165,21 @@ def fit(
     spans = (max(round((len(vault.outer) - 1) * vault.mm / span), 4),) * 2
     size = (len(vault.outer) - 1) * vault.mm / spans[0]
     material = Material.plate(tension, (wavelength / (2 * np.pi)) ** 4, (size, size))
-    found, springs, steps, rests = [], [], [], []
+    rests, settings = [], []
     for radius in (vault.outer, vault.inner):
-        rest, pulled = _settled(springs_to(vault, radius, spans), spans, material)
-        moved = sheet_motion.Motion(rest, np.zeros(0), 0.0, converged=True)
-        if dynamics is not None:
-            moved = sheet_motion.start(rest, pulled, material, dynamics)
-            moved = sheet_motion.relax(moved, pulled, material, dynamics, tol=tol, max_iter=max_iter)
-        found.append(moved.sheet)
-        springs.append(pulled)
-        steps.append(moved.n_iter)
-        rests.append(moved.converged)
-    return Sheets(
-        vault, found[0], found[1], (springs[0], springs[1]), material, (steps[0], steps[1]), (rests[0], rests[1])
-    )
+        springs = springs_to(vault, radius, spans)
+        natural = _sphere(springs.points, vault, spans)
+        rest, springs = sheet.settle(springs, natural, material, rounds=_ROUNDS)
+        settings.append(Setting(springs, natural, material))
+        rests.append(Motion(rest, np.zeros(0), 0.0, converged=True))
+    if dynamics is not None:
+        rests = [
+            sheet_motion.relax(sheet_motion.start(m.sheet, s, dynamics), s, dynamics, tol=tol, max_iter=max_iter)
+            for m, s in zip(rests, settings, strict=True)
+        ]
+    outer, inner = rests
+    counts, ends = (outer.n_iter, inner.n_iter), (outer.converged, inner.converged)
+    return Sheets(vault, outer.sheet, inner.sheet, (settings[0], settings[1]), counts, ends)
 
 
 def springs_to(vault: chart.RadialChart, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
@@ -195,7 +195,7 @@ def springs_to(vault: chart.RadialChart, radius: NDArray[np.float64], spans: tup
     """
     known = np.isfinite(radius) & ~vault.hole
     points = (vault.directions[known] * radius[known][:, None]) @ vault.axes.T
-    v, u = np.nonzero(known) / (np.array([[len(radius) - 1.0]]) / np.array(spans)[:, None])
+    v, u = (i * n / (len(radius) - 1) for i, n in zip(np.nonzero(known), spans, strict=True))
     return Springs(points, v, u, np.full(len(points), vault.mm**2))
 
 
@@ -220,15 +220,29 @@ def radii_of(one: Sheet, vault: chart.RadialChart) -> NDArray[np.float64]:
     return radius
 
 
-def _settled(springs: Springs, spans: tuple[int, int], material: Material) -> tuple[Sheet, Springs]:
-    """The sheet at rest with springs weakened where they stay far off it, and those springs."""
-    full = springs.strength
-    for _ in range(_ROUNDS):
-        rest = sheet.settle(springs, spans, material)
-        off = np.linalg.norm(springs.points - rest.at(springs.v, springs.u), axis=1)
-        spread = max(float(np.median(off)) * 1.4826, _LEAST_DOUBT)
-        springs = replace(springs, strength=full / (1 + (off / (_DOUBTED * spread / 3)) ** 2))
-    return sheet.settle(springs, spans, material), springs
+def _sphere(points: NDArray[np.float64], vault: chart.RadialChart, spans: tuple[int, int]) -> Sheet:
+    """The sheet on the sphere that best fits points around the hole, each ray at its own place."""
+    system = np.column_stack([2 * points, np.ones(len(points))])
+    squares, weight = (points**2).sum(axis=1), np.ones(len(points))
+    for _ in range(_SPHERE_ROUNDS):
+        x = np.linalg.lstsq(system * weight[:, None], squares * weight, rcond=None)[0]
+        radius = np.sqrt(x[3] + x[:3] @ x[:3])
+        off = np.abs(np.linalg.norm(points - x[:3], axis=1) - radius)
+        weight = 1 / (1 + (off / (3 * np.median(off) + 1e-6)) ** 2)
+    along = vault.directions @ vault.axes.T
+    middle = along @ x[:3]
+    away = middle + np.sqrt(np.maximum(middle**2 + x[3], 0.0))
+    v, u = np.indices(away.shape).reshape(2, -1) * np.array(spans)[:, None] / (len(away) - 1)
+    springs = Springs((along * away[..., None]).reshape(-1, 3), v, u, np.ones(away.size))
+    return sheet.settle(springs, sheet.flat(spans), Material((0.0, 0.0, 1e-6, 1e-6, 1e-6)))[0]
+
+
+def _main_piece(piece: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The piece of a patch that fills most of the opening; only the box around it is looked at."""
+    main, box = np.zeros(piece.shape, bool), ndimage.find_objects(piece.view(np.uint8))
+    if box:
+        main[box[0]] = fill.main_piece(piece[box[0]], opening[box[0]])
+    return main
 
 
 def _inside(vault: chart.RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
