@@ -13,10 +13,10 @@ METHODS = {
     "slicewise": "cranio_nb.methods.slicewise",
     "hull": "cranio_nb.methods.hull",
     "reflection": "cranio_nb.methods.reflection",
-    "dnurbs": "cranio_nb.methods.dnurbs",
     "you": "cranio_nb.methods.you",
+    "thin-plate": "cranio_nb.methods.thin_plate",
+    "dnurbs": "cranio_nb.methods.dnurbs",
 }
-METHODS = {"slicewise": "cranio_nb.methods.slicewise", "thin-plate": "cranio_nb.methods.thin_plate"}
 """Name -> module with the door ``design(bone, lesions, *, progress, **options) -> Prosthesis``. A module that also has
 ``paper_options(bone)`` offers the preset "paper"."""
 

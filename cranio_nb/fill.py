@@ -94,7 +94,7 @@ def main_piece(patch: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[
     patch, opening : ndarray of bool, shape (P, R, C)
         The opening is the lesion's coarse sheet.
     """
-    box = tuple(_span(patch.any(axis=others)) for others in ((1, 2), (0, 2), (0, 1)))
+    box = tuple(_span(np.asarray(patch.any(axis=others))) for others in ((1, 2), (0, 2), (0, 1)))
     labels, n_parts = ndimage.label(patch[box])
     if n_parts <= 1:
         return patch
@@ -110,7 +110,6 @@ def _span(hit: NDArray[np.bool_]) -> slice:
     """From the first to the last hit."""
     at = np.flatnonzero(hit)
     return slice(int(at[0]), int(at[-1]) + 1) if len(at) else slice(0, 0)
-    return labels == best
 
 
 def solid_piece(patch: NDArray[np.bool_], opening: Volume, bone: Volume, *, thinnest: float = 1.0) -> NDArray[np.bool_]:

@@ -29,8 +29,6 @@ STAGES = {
 }
 # stage 2 for real skulls, and whom each may see
 VAULT = {"casting": set(), "chart": {"casting"}, "symmetry": set(), "rays": set(), "slicing": {"chart", "rays"}}
-CORE = NOUNS | MESH_WORK | STAGES | set(VAULT)
-VAULT = {"chart": set(), "rays": set(), "slicing": {"chart", "rays"}}  # stage 2 for real skulls, and whom each may see
 SHEETS = {"sheet": set(), "sheet_motion": {"sheet"}}  # elastic surfaces
 CORE = NOUNS | MESH_WORK | set(SHEETS) | STAGES | set(VAULT)
 OWNERS = {"matplotlib": {"plot"}, "pyvista": {"view3d"}, "ipywidgets": {"widgets.live"}}

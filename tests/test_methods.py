@@ -14,9 +14,7 @@ from cranio_nb import evaluate
 from cranio_nb.errors import NoOpening
 from cranio_nb.lesion import find
 from cranio_nb.mesh_check import check_mesh
-from cranio_nb.methods import hull, reflection, slicewise, you
-from cranio_nb.methods import slicewise, thin_plate
-from cranio_nb.methods import dnurbs, slicewise, you
+from cranio_nb.methods import dnurbs, hull, reflection, slicewise, thin_plate, you
 from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
 from cranio_nb.volume import Volume, same_grid
 from data_synth import phantom_case, scan
