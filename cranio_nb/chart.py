@@ -240,23 +240,10 @@ def _sample(bone: Volume, eye: NDArray, directions: NDArray, lengths: NDArray) -
 def walls(
     bone: Volume, eye: NDArray[np.float64], directions: NDArray[np.float64], expected: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Inner and outer radius of the run of bone nearest to where the outer surface is expected.
+    """Inner and outer radius, shape (...), mm, of the run of bone nearest to `expected` on each ray; nan for none.
 
-    Parameters
-    ----------
-    bone : Volume
-        Bool mask.
-    eye : ndarray, shape (3,)
-        Where the rays start, world mm.
-    directions : ndarray, shape (..., 3)
-        Unit vectors, world.
-    expected : ndarray, shape (...)
-        Radius of the outer surface in mm, roughly.
-
-    Returns
-    -------
-    inner, outer : ndarray, shape (...)
-        Radii in mm at sub-voxel precision; nan where a ray meets no bone from 16 mm below to 12 mm above `expected`.
+    Rays start at `eye` (3,), world mm, along unit vectors `directions` (..., 3); `expected` (...) is the radius of the
+    outer surface, roughly: the run is looked for from 16 mm below to 12 mm above it.
     """
     rays, level = directions.reshape(-1, 3), expected.ravel()
     field, box = _field(bone, eye, rays[::8], level[::8])

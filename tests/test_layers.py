@@ -28,7 +28,13 @@ STAGES = {
     "fit",
 }
 VAULT = {"chart": set(), "rays": set(), "slicing": {"chart", "rays"}}  # stage 2 for real skulls, and whom each may see
-CORE = NOUNS | MESH_WORK | STAGES | set(VAULT)
+LEARNED = {  # from other skulls, and whom each may see
+    "headframe": {"lesion"},
+    "vaultmap": {"headframe", "chart"},
+    "prior": {"headframe", "chart", "vaultmap"},
+    "prior_file": {"headframe", "prior", "vaultmap"},
+}
+CORE = NOUNS | MESH_WORK | STAGES | set(VAULT) | set(LEARNED)
 OWNERS = {"matplotlib": {"plot"}, "pyvista": {"view3d"}, "ipywidgets": {"widgets.live"}}
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
 
@@ -71,6 +77,8 @@ def allowed(name):
         return NOUNS | MESH_WORK
     if room in VAULT:
         return NOUNS | VAULT[room]
+    if room in LEARNED:
+        return NOUNS | LEARNED[room]
     if room in STAGES:
         return NOUNS | MESH_WORK
     if room == "methods":
