@@ -12,12 +12,14 @@ Stages    `readers` scan -> CT; `segment` CT -> bone; `lesion` bone -> openings;
           truth -> measures; `fit` and `implant` prosthesis -> what a workshop asks; `export` -> files
 Vault     `chart` the vault as radius maps; `rays` gap ends for real skulls; `slicing` planes to cut along
           (sees the other two)
+Learned   `headframe` lays a skull on the mean head; `vaultmap` radius maps on it, and `prior` what those of
+          intact skulls tell about the bone in a hole (both see `chart`); `prior_file` keeps it
 Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share
 Methods   `methods.slicewise` the paper; every method is `design(bone, lesions, *, options) -> Prosthesis`, and
           `catalogue` knows them by name
 Outside   `run` the pipeline as one call; `trial` a method in a process of its own; `truth`, `compare` methods against
           the missing bone and each other; `tables`, `render`, `plot`, `report`, `compare_page`, `outputs`, `console`,
-          `doctor`, `cli`. Only `plot` imports matplotlib
+          `doctor`, `prior_study`, `cli`. Only `plot` imports matplotlib
 ========  ====================================================================================================
 
 Data's way: scan -> CT -> bone -> lesion -> [slice: gap ends -> balloon -> fill] -> patch -> mesh -> `Prosthesis`.

@@ -17,6 +17,7 @@ from .catalogue import METHODS, PRESETS, check_options
 from .cli_compare import compare
 from .cli_lab import lab
 from .cli_lessons import lessons
+from .cli_prior import prior
 from .errors import CannotWrite, CranioError, InputRefused
 from .readers import ALLOWANCES, read_ct
 
@@ -49,10 +50,8 @@ def _complain(error: Exception) -> None:
     if isinstance(error, CranioError):
         click.echo(f"cranio-nb: {error}", err=True)
     else:
-        kind = type(error).__name__
-        click.echo(
-            f"cranio-nb: something unforeseen went wrong ({kind}); run again with --debug to see where.", err=True
-        )
+        message = f"something unforeseen went wrong ({type(error).__name__}); run again with --debug to see where."
+        click.echo(f"cranio-nb: {message}", err=True)
 
 
 def _set_debug(ctx: click.Context, _: click.Parameter, value: bool) -> None:
@@ -70,7 +69,9 @@ _threshold = click.option("--threshold", type=float, metavar="HU", help="Lowest 
 _json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 
 
-@click.group(cls=_Doors, commands=[compare, lab, lessons], context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(
+    cls=_Doors, commands=[compare, lab, lessons, prior], context_settings={"help_option_names": ["-h", "--help"]}
+)
 @click.version_option(__version__, prog_name="cranio-nb")
 @_debug
 def main() -> None:

@@ -206,9 +206,8 @@ class _Goal:
 
     @classmethod
     def of(cls, mean: Cloud) -> _Goal:
-        points = (mean.inside, mean.outside)
-        normals = (_normals(mean.inside), _normals(mean.outside))
-        return cls(points, normals, (cKDTree(mean.inside), cKDTree(mean.outside)))
+        across = (normals(mean.inside), normals(mean.outside))
+        return cls((mean.inside, mean.outside), across, (cKDTree(mean.inside), cKDTree(mean.outside)))
 
     def fit(
         self, cloud: Cloud, matrix: Array, shift: Array, n_iter: int, *, affine: bool
@@ -254,13 +253,14 @@ def _similar_step(points: Array, normals: Array, residual: Array, weight: Array)
 def _solve(slopes: Array, residual: Array, weight: Array, ridge: Array) -> Array:
     """Weighted least squares, damped."""
     weighted = slopes * weight[:, None]
-    return np.linalg.solve(slopes.T @ weighted + np.diag(ridge), -weighted.T @ residual)
+    step = np.linalg.solve(slopes.T @ weighted + np.diag(ridge), -weighted.T @ residual)
+    return np.asarray(step, float)
 
 
 def _rotation(turn: Array) -> Array:
     """Rotation about a vector by its length in radians (Rodrigues)."""
     angle = float(np.linalg.norm(turn))
-    x, y, z = turn
+    x, y, z = turn.tolist()
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sinc(angle / np.pi) * cross + 0.5 * np.sinc(angle / 2 / np.pi) ** 2 * cross @ cross
 
@@ -270,9 +270,9 @@ def _nod(degrees: float) -> Array:
     return _rotation(np.array([np.radians(degrees), 0.0, 0.0]))
 
 
-def _normals(points: Array) -> Array:
+def normals(points: Array) -> Array:
     """Unit normals of a surface given by points (n, 3) around the origin, pointing away from it."""
     _, near = cKDTree(points).query(points, 9)
     patches = points[near] - points[near].mean(axis=1, keepdims=True)
-    normals = np.linalg.svd(patches)[2][:, 2]
-    return normals * np.sign(np.einsum("ij,ij->i", normals, points))[:, None]
+    across = np.linalg.svd(patches)[2][:, 2]
+    return across * np.sign(np.einsum("ij,ij->i", across, points))[:, None]

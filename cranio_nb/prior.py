@@ -6,12 +6,14 @@ radii in mm of the skull; world mm (LPS).
 Every intact skull is laid on the mean head, and its outer and inner radius are measured along the same 6400 rays. With
 the mirror images as further skulls, these are samples f_1 .. f_m of a Gaussian process with mean mu and covariance
 
-    K(a, b) = taper(a, b) * sum (f_i(a) - mu(a)) (f_i(b) - mu(b)) / (m - 1)  +  k(a, b),
+    K(a, b) = taper(a, b) * sum (f_i(a) - mu(a)) (f_i(b) - mu(b)) / (m - 1)  +  h(a) . h(b)  +  k(a, b),
 
 a and b each being a ray and a side. The taper, exp(-d^2 / 2 L^2) in the chord d between the rays, drops what few
 skulls cannot tell (far-off correlations, Houtekamer and Mitchell 2001, "localisation"), and lifts the rank from m - 1
-to thousands. k is a sum of squared exponentials: what skulls do that none of these did. The known bone y of a skull
-then gives the rest as the conditional mean (Rasmussen and Williams 2006, eq. 2.25)
+to thousands. The twelve h are what small affine maps do to the radii of the mean head: a skull with a hole is not
+laid quite as it would be without. k is a sum of squared exponentials, smooth over long and short ways: what skulls do
+that none of these did. Where nothing was learned it is left alone, and continues the known bone smoothly. The known
+bone y of a skull then gives the rest as the conditional mean (Rasmussen and Williams 2006, eq. 2.25)
 
     f* = mu* + K* (K + s^2 I)^-1 (y - mu).
 
@@ -25,18 +27,30 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import linalg
 from scipy.interpolate import CloughTocher2DInterpolator
-from scipy.spatial import cKDTree
 
-from . import casting, headframe
+from . import headframe
 from .chart import RadialChart
 from .errors import InputRefused
 from .headframe import Cloud, HeadFrame
+from .vaultmap import (
+    RADIUS,
+    VAULT,
+    coarse,
+    distance,
+    is_open,
+    measure,
+    mirrored,
+    near,
+    radius_along_rays,
+    surroundings,
+    vault_rays,
+    without_outliers,
+)
 from .volume import Volume
 
 Array = NDArray[np.float64]
@@ -44,15 +58,13 @@ Mask = NDArray[np.bool_]
 
 LEAST = 2
 """Fewest skulls that make a prior."""
-_VAULT = 105.0  # degrees from the vertex down to which the vault is learned
 _TAPER = 80.0  # mm: L
-_KERNEL = ((0.5, 20.0), (0.3, 10.0))  # mm of height and of length of each part of k
+_KERNEL = ((3.0, 80.0), (0.7, 25.0), (0.3, 10.0))  # mm of height and of length of each part of k
+_LAID = 1.0  # mm: standard deviation of each part of the affine map that lays a skull on the mean head
 _SIDES = 0.5  # correlation of the outer and the inner side in k
 _NOISE = 0.2  # mm: s, voxels and sutures
-_OUTLIER = 2.5  # mm off its surroundings: a suture, a vessel, a loose chip
 _RIM, _FREE_RIM = 4.0, 6.0  # mm of bone beside a measured hole, and beside any other, that are not trusted
 _FINE, _MIDDLE = 12.0, 45.0  # mm from the unknown up to which all, and a quarter, of the known rays are used
-_RADIUS = 85.0  # mm: turns chords of the unit sphere into lengths
 _CLOSED = 0.98  # of the vault's rays that meet bone on an intact skull
 _MISFIT = 3.5  # mm: far more than any adult skull showed
 
@@ -123,7 +135,7 @@ def learn(bones: Iterable[Volume], progress: Callable[[str, float], None] | None
         message = f"A prior needs {LEAST} intact skulls; {len(packed)} could be used."
         raise InputRefused("TooFewSkulls", message, "Give a folder with more scans of whole heads.")
     mean, frames = _lay_together(packed, clouds, tell)
-    middle = _radius_along_rays(mean.outside)
+    middle = radius_along_rays(mean.outside)
     radii = []
     for i, (one, frame) in enumerate(zip(packed, frames, strict=True)):
         tell("measuring", i / len(packed))
@@ -143,38 +155,6 @@ def check_intact(bone: Volume) -> None:
     if seen < _CLOSED:
         message = f"{100 * (1 - seen):.0f} % of the vault is open or outside the image."
         raise InputRefused("NotIntact", message, "A prior is learned from scans of whole, closed skulls.")
-
-
-@cache
-def vault_rays() -> Array:
-    """The rays of the vault, shape (m, 3), head frame: about 3 mm apart, symmetric about x = 0; read-only."""
-    rays = headframe.sphere(5)
-    rays = rays[rays[:, 2] > np.cos(np.radians(_VAULT))]
-    rays.setflags(write=False)
-    return rays
-
-
-def mirrored(radii: NDArray) -> NDArray:
-    """Radius maps (..., m) over `vault_rays` of the mirror images of skulls."""
-    return radii[..., headframe.twins(vault_rays())]
-
-
-def measure(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
-    """Outer and inner radius of a skull along `vault_rays`, shape (2, m), mm of the mean head; nan for none.
-
-    Parameters
-    ----------
-    bone : Volume
-        Bool mask.
-    frame : HeadFrame
-    middle : ndarray, shape (m,)
-        Outer radius of the mean head, mm.
-    """
-    rays = vault_rays()
-    stretch = frame.stretch(rays)
-    directions = rays @ frame.matrix.T / stretch[:, None]
-    inner, outer = casting.cast(bone, frame.origin, directions, middle * stretch)
-    return np.stack([outer, inner]) / stretch
 
 
 def expect(prior: Prior, bone: Volume, chart: RadialChart) -> Expected:
@@ -200,11 +180,11 @@ def expect(prior: Prior, bone: Volume, chart: RadialChart) -> Expected:
     middle = prior.samples.mean(axis=0)
     radii = measure(bone, frame, middle[0])
     hole = _rays_through(chart, frame, middle)
-    unknown = _near(hole, _RIM) | _near(_open(radii) & ~hole, _FREE_RIM)
-    known = np.where(unknown, np.nan, _without_outliers(radii, middle))
+    unknown = near(hole, _RIM) | near(is_open(radii) & ~hole, _FREE_RIM)
+    known = np.where(unknown, np.nan, without_outliers(radii, middle))
     directions = vault_rays() @ frame.matrix.T
     reach = min(len(chart.outer) / 2 * chart.step + 0.2, np.pi)
-    wanted = directions @ chart.axes[2] > np.cos(reach) * np.linalg.norm(directions, axis=1)
+    wanted: Mask = directions @ chart.axes[2] > np.cos(reach) * np.linalg.norm(directions, axis=1)
     points = frame.to_world(vault_rays()[wanted] * condition(prior, known, wanted)[..., None])
     outer, inner = (_onto_chart(chart, frame, side) for side in points)
     return Expected(outer, inner, frame)
@@ -229,51 +209,51 @@ def condition(prior: Prior, radii: Array, wanted: Mask) -> Array:
     samples = prior.samples
     mean = samples.mean(axis=0)
     spread = (samples - mean) / np.sqrt(len(samples) - 1)
-    known = np.flatnonzero(_used(np.isfinite(radii).all(axis=0), wanted))
+    laid = _LAID * np.stack([_affine_changes(side) for side in mean])
+    known = np.flatnonzero(_used(np.logical_and(*np.isfinite(radii)), wanted))
     at = np.flatnonzero(wanted)
     if not len(known):
         return mean[:, at]
-    matrix = _covariance(spread, known, known)
+    matrix = _covariance(spread, laid, known, known)
     matrix[np.diag_indices(len(matrix))] += _NOISE**2
     factor = linalg.cho_factor(matrix, overwrite_a=True, check_finite=False)
     weights = linalg.cho_solve(factor, (radii - mean)[:, known].ravel())
-    return mean[:, at] + (_covariance(spread, at, known) @ weights).reshape(2, -1)
+    return mean[:, at] + (_covariance(spread, laid, at, known) @ weights).reshape(2, -1)
 
 
-def _covariance(spread: Array, a: NDArray[np.intp], b: NDArray[np.intp]) -> Array:
-    """K between both sides of rays a and of rays b, shape (2 len(a), 2 len(b)); `spread` (2 n, 2, m) is scaled."""
+def _covariance(spread: Array, laid: Array, a: NDArray[np.intp], b: NDArray[np.intp]) -> Array:
+    """K between both sides of rays a and of rays b, shape (2 len(a), 2 len(b)).
+
+    `spread` (2 n, 2, m) holds the samples about their mean over the root of 2 n - 1, `laid` (2, m, 12) the h.
+    """
     rays = vault_rays()
-    squared = np.maximum(2 - 2 * rays[a] @ rays[b].T, 0) * _RADIUS**2
+    squared = np.maximum(2 - 2 * rays[a] @ rays[b].T, 0) * RADIUS**2
     taper = np.exp(squared / (-2 * _TAPER**2))
     kernel = sum(height**2 * np.exp(squared / (-2 * length**2)) for height, length in _KERNEL)
-    parts = [
-        [spread[:, i, a].T @ spread[:, j, b] * taper + (1.0 if i == j else _SIDES) * kernel for j in (0, 1)]
-        for i in (0, 1)
-    ]
+    parts = []
+    for i in (0, 1):
+        learned = [spread[:, i, a].T @ spread[:, j, b] * taper + laid[i, a] @ laid[j, b].T for j in (0, 1)]
+        parts.append([learned[j] + (1.0 if i == j else _SIDES) * kernel for j in (0, 1)])
     return np.block(parts)
+
+
+def _affine_changes(radius: Array) -> Array:
+    """Change of radius (m,) for 1 mm of each part of an affine map, shape (m, 12).
+
+    A point p of a surface with normal n that moves by u changes the radius along its ray d by (n . u) / (n . d).
+    """
+    points = vault_rays() * radius[:, None]
+    normals = headframe.normals(points)
+    facing = np.maximum(np.einsum("ij,ij->i", normals, vault_rays()), 0.3)  # a ray that grazes the base tells nothing
+    normals = normals / facing[:, None]
+    turned = normals[:, :, None] * (points / RADIUS)[:, None, :]
+    return np.concatenate([normals, turned.reshape(-1, 9)], axis=1)
 
 
 def _used(known: Mask, wanted: Mask) -> Mask:
     """The known rays that are used: all near the unknown that is wanted, fewer further away."""
-    away = _distance(wanted & ~known)
-    return known & ((away < _FINE) | (_coarse(4) & (away < _MIDDLE)) | _coarse(3))
-
-
-@cache
-def _coarse(halvings: int) -> Mask:
-    """Which rays belong to a coarser sphere, too; read-only."""
-    rays = headframe.sphere(halvings)
-    coarse = cKDTree(rays).query(vault_rays())[0] < 0.02  # a tenth to a half of a step: the finer points moved a little
-    coarse.setflags(write=False)
-    return coarse
-
-
-@cache
-def _neighbours(n: int) -> NDArray[np.intp]:
-    """The n nearest rays of each ray, itself first, shape (m, n); read-only."""
-    near = cKDTree(vault_rays()).query(vault_rays(), n)[1]
-    near.setflags(write=False)
-    return near
+    away = distance(wanted & ~known)
+    return known & ((away < _FINE) | (coarse(4) & (away < _MIDDLE)) | coarse(3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,34 +290,12 @@ def _lay_together(
     return mean, frames
 
 
-def _radius_along_rays(points: Array) -> Array:
-    """Radius of a surface given by points (n, 3) along each ray: weighted mean of the four nearest directions."""
-    radius = np.linalg.norm(points, axis=1)
-    apart, at = cKDTree(points / radius[:, None]).query(vault_rays(), 4)
-    weight = 1 / (apart + 1e-3) ** 2
-    return (radius[at] * weight).sum(axis=1) / weight.sum(axis=1)
-
-
 def _completed(radii: Array) -> Array:
     """Radius maps (n, 2, m) of intact skulls; where a ray is missing or far off, the offset around it holds."""
     middle = np.nanmedian(np.concatenate([radii, mirrored(radii)]), axis=0)
-    usual = np.stack([middle + _surroundings(one - middle) for one in radii])
-    sound = np.stack([_without_outliers(one, middle) for one in radii])
+    usual = np.stack([middle + surroundings(one - middle) for one in radii])
+    sound = np.stack([without_outliers(one, middle) for one in radii])
     return np.where(np.isfinite(sound), sound, usual)
-
-
-def _without_outliers(radii: Array, middle: Array) -> Array:
-    """Radii (2, m) with nan where a ray is far off its surroundings."""
-    offset = radii - middle
-    with np.errstate(invalid="ignore"):
-        good = np.abs(offset - _surroundings(offset)) < _OUTLIER
-    return np.where(good, radii, np.nan)
-
-
-def _surroundings(values: Array) -> Array:
-    """Median of values (2, m) over each ray and its twelve neighbours; 0 where all are nan."""
-    around = values[:, _neighbours(13)]
-    return np.nanmedian(np.where(np.isnan(around).all(axis=-1, keepdims=True), 0.0, around), axis=-1)
 
 
 def _rays_through(chart: RadialChart, frame: HeadFrame, middle: Array) -> Mask:
@@ -351,23 +309,6 @@ def _rays_through(chart: RadialChart, frame: HeadFrame, middle: Array) -> Mask:
     return through
 
 
-def _open(radii: Array) -> Mask:
-    """Rays without bone whose neighbours mostly meet none either: openings, not sutures."""
-    free = np.isnan(radii[0])
-    return free & (free[_neighbours(7)].mean(axis=1) > 0.5)
-
-
-def _near(marked: Mask, reach: float) -> Mask:
-    """Rays up to `reach` mm beside marked ones, these included."""
-    return _distance(marked) <= reach
-
-
-def _distance(marked: Mask) -> Array:
-    """Chord from each ray to the nearest marked one, mm; inf where none is marked."""
-    rays = vault_rays()
-    return cKDTree(rays[marked]).query(rays)[0] * _RADIUS if marked.any() else np.full(len(rays), np.inf)
-
-
 def _onto_chart(chart: RadialChart, frame: HeadFrame, points: Array) -> Array:
     """Radius of a surface given by points (k, 3), world, along the rays of a chart, shape (M, M), mm."""
     away = points - chart.eye
@@ -376,5 +317,5 @@ def _onto_chart(chart: RadialChart, frame: HeadFrame, points: Array) -> Array:
     radius = values.reshape(chart.outer.shape)
     seen = (chart.eye + chart.directions * radius[..., None] - frame.origin) @ np.linalg.inv(frame.matrix).T
     with np.errstate(invalid="ignore"):
-        below = seen[..., 2] < np.cos(np.radians(_VAULT)) * np.linalg.norm(seen, axis=-1)
+        below = seen[..., 2] < np.cos(np.radians(VAULT)) * np.linalg.norm(seen, axis=-1)
     return np.where(below, np.nan, radius)

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 
 from .errors import CannotWrite, InputRefused
 from .headframe import Cloud
-from .prior import Prior, vault_rays
+from .prior import Prior
+from .vaultmap import vault_rays
 
 VERSION = 1
 """Of the file; another version is refused."""
@@ -32,12 +33,11 @@ def save(prior: Prior, path: Path) -> None:
     CannotWrite
         ``CannotWrite`` when the system refuses; what was there before is still there.
     """
-    arrays = {"inside": prior.mean.inside, "outside": prior.mean.outside, "radii": prior.radii}
-    single = {name: array.astype(np.float32) for name, array in arrays.items()}
+    inside, outside, radii = (np.asarray(a, np.float32) for a in (prior.mean.inside, prior.mean.outside, prior.radii))
     try:
         with tempfile.TemporaryDirectory(prefix=".part-", dir=path.absolute().parent) as folder:
             part = Path(folder) / "prior.npz"
-            np.savez_compressed(part, version=np.int64(VERSION), **single)
+            np.savez_compressed(part, version=np.int64(VERSION), inside=inside, outside=outside, radii=radii)
             os.replace(part, path)
     except OSError as error:
         reason = error.strerror or type(error).__name__
@@ -53,7 +53,7 @@ def load(path: Path) -> Prior:
         ``NoPrior`` when there is no such file, or when it is no sound prior of this version.
     """
     try:
-        with np.load(path, allow_pickle=False) as held:
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as held:
             version = int(held["version"])
             arrays = {name: held[name] for name in held.files}
     except OSError as error:
@@ -72,8 +72,8 @@ def _checked(arrays: dict[str, NDArray]) -> Prior:
     """The prior in the arrays of a file, if they have the form of one."""
     shapes = {"inside": (None, 3), "outside": (None, 3), "radii": (None, 2, len(vault_rays()))}
     for name, shape in shapes.items():
-        array = arrays.get(name)
-        good = array is not None and array.dtype == np.float32 and array.ndim == len(shape) and len(array) > 0
+        array = arrays.get(name, np.zeros(0))
+        good = array.dtype == np.float32 and array.ndim == len(shape) and len(array) > 0
         if not good or array.shape[1:] != shape[1:] or not np.isfinite(array).all():
             raise InputRefused("NoPrior", f"The prior is damaged: its {name} part is not as it should be.", _REMEDY)
     mean = Cloud(arrays["inside"].astype(float), arrays["outside"].astype(float), np.zeros(3), np.eye(3))

@@ -30,7 +30,13 @@ STAGES = {
 # stage 2 for real skulls, and whom each may see
 VAULT = {"casting": set(), "chart": {"casting"}, "symmetry": set(), "rays": set(), "slicing": {"chart", "rays"}}
 SHEETS = {"sheet": set(), "sheet_motion": {"sheet"}}  # elastic surfaces
-CORE = NOUNS | MESH_WORK | set(SHEETS) | STAGES | set(VAULT)
+LEARNED = {  # from other skulls, and whom each may see
+    "headframe": {"lesion"},
+    "vaultmap": {"headframe", "casting"},
+    "prior": {"headframe", "chart", "vaultmap"},
+    "prior_file": {"headframe", "prior", "vaultmap"},
+}
+CORE = NOUNS | MESH_WORK | set(SHEETS) | STAGES | set(VAULT) | set(LEARNED)
 OWNERS = {"matplotlib": {"plot"}, "pyvista": {"view3d"}, "ipywidgets": {"widgets.live"}}
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
 
@@ -75,6 +81,8 @@ def allowed(name):
         return NOUNS | VAULT[room]
     if room in SHEETS:
         return NOUNS | SHEETS[room]
+    if room in LEARNED:
+        return NOUNS | LEARNED[room]
     if room in STAGES:
         return NOUNS | MESH_WORK
     if room == "methods":
