@@ -67,6 +67,12 @@ def holes(*borders, structure="None", compare="<=", sizes="s", given="mask"):
         "    return out"
     )
 
+REGIONS_4 = (
+    "l, n = ndimage.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel(), minlength=n + 1); s[0] = 0"
+)
+REGIONS_8 = REGIONS_4.replace("~bone)", "~bone, np.ones((3, 3)))")
+TETRAHEDRA = "a, b, c = vertices[faces].swapaxes(0, 1); v = (a * np.cross(b, c)).sum(1)"
+NEAREST = "there, back = cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]"
 
 # what students write, and a word of the hint that they should get
 WRONG = {
@@ -199,31 +205,49 @@ WRONG = {
             "return (s >= min_pixels)[l]",
             "brain's place",
         ),
+        (f"{REGIONS_4}; k = s >= min_pixels; k[s.argmax()] = False; return k[l]", "touch at a corner"),
+        (f"{REGIONS_8}; k = s > min_pixels; k[s.argmax()] = False; return k[l]", ">=, not >"),
+        (f"{REGIONS_4}; k = s > min_pixels; k[s.argmax()] = False; return k[l]", "(>=), and"),
+        (f"{REGIONS_8}; return (s >= min_pixels)[l]", "brain's place"),
     ],
     "6.1": [
         ("a, b, c = vertices[faces].swapaxes(0, 1); return (a * np.cross(b, c)).sum() / 3", "Twice"),
         ("a, b, c = vertices[faces].swapaxes(0, 1); return abs((a * np.cross(b, c)).sum(1)).sum() / 6", "signs"),
         ("a, b, c = vertices[faces].swapaxes(0, 1); return (a * np.cross(c, b)).sum() / 6", "sign is wrong"),
+        (f"{TETRAHEDRA}; return v.sum()", "Six times too big"),
+        (f"{TETRAHEDRA}; return abs(v.sum()) / 6", "inside out"),
     ],
     "6.2": [
         ("return index", "still voxels"),
         ("return index * spacing[::-1]", "turn it round"),
         ("return index / spacing", "Divided"),
+        ("return index[:, ::-1] * spacing", "columns of the index"),
+        ("return (index * spacing)[:, ::-1]", "their columns turned round"),
+        ("return (index + 0.5) * spacing", "Half a voxel"),
+        ("return index * spacing - spacing / 2", "Half a voxel"),
     ],
     "7.1": [
         ("return np.percentile(cKDTree(b).query(a)[0], 95)", "One way"),
         ("return max(cKDTree(b).query(a)[0].max(), cKDTree(a).query(b)[0].max())", "largest"),
         ("return np.concatenate([cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]]).mean()", "mean distance"),
+        (f"{NEAREST}; return np.percentile(back, 95)", "what a has too much"),
+        (f"{NEAREST}; return max(np.percentile(there, 95), np.percentile(back, 95))", "larger of two percentiles"),
+        (f"{NEAREST}; return np.percentile(np.concatenate([there, back]), 0.95)", "not 0.95"),
     ],
     "7.2": [
         ("return points - np.outer((points - origin) @ normal, normal)", "twice as far"),
         ("return points - 2 * np.outer(points @ normal, normal)", "origin given"),
         ("return points * [-1, 1, 1]", "x = 0"),
+        ("distance = (points - origin) @ normal; return points - 2 * distance * normal", "distance[:, None]"),
+        ("return points + 2 * np.outer((points - origin) @ normal, normal)", "sign is wrong"),
+        ("p = points - origin; return p - 2 * np.outer(p @ normal, normal)", "left there"),
     ],
     "10.1": [
         ("v = [s[key][side] for s in slices]; return min(v), max(v)", "no balloon"),
         ("v = [s[key][1 - side] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "side 0"),
-        ("v = [s[key][side] for s in slices if s['status'] == 'balloon']; return max(v), min(v)", "first"),
+        ("v = [s[key][side] for s in slices if s['status'] == 'balloon']; return max(v), min(v)", "comes first"),
+        ("v = [s[key][side] for s in slices if s['status'] == 'balloon']; return v[0], v[-1]", "in any order"),
+        ("v = [s[key][side] for s in slices if s['status'] == 'balloon']; return (np.mean(v),) * 2", "the mean"),
     ],
     "10.2": [
         ("return np.arcsin(chord / (2 * radius))", "radians"),

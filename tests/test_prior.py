@@ -5,7 +5,7 @@ import pytest
 from click.testing import CliRunner
 
 from cranio_nb import chart as radial
-from cranio_nb import headframe, prior, prior_study, vaultmap
+from cranio_nb import casting, headframe, prior, prior_study, vaultmap
 from cranio_nb.cli import main
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.export import write_nifti
@@ -131,7 +131,7 @@ def test_a_hole_in_a_head_is_foretold_on_its_chart(learned, phantom, skull):
     chart = radial.look(bone, find(bone)[0])
     found = prior.expect(learned, bone, chart)
     whole = Volume(case.bone | case.implant, case.affine)
-    inner, outer = radial.walls(whole, chart.eye, chart.directions, np.nan_to_num(found.outer, nan=80.0))
+    inner, outer = casting.cast(whole, chart.eye, chart.directions, np.nan_to_num(found.outer, nan=80.0))
     assert np.isfinite(found.outer[chart.hole]).all()
     assert np.abs(found.outer - outer)[chart.hole].mean() < 0.8
     assert np.abs(found.inner - inner)[chart.hole].mean() < 0.8

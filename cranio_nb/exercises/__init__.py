@@ -2,10 +2,11 @@
 
 from .curves import CURVES
 from .image import IMAGE
+from .measure import MEASURE
 from .solid import SOLID
 from .task import Exercise
 
-EXERCISES: dict[str, Exercise] = {**IMAGE, **CURVES, **SOLID}
+EXERCISES: dict[str, Exercise] = {**IMAGE, **CURVES, **SOLID, **MEASURE}
 """By number, lesson by lesson."""
 
 __all__ = ["EXERCISES", "Exercise"]

@@ -1,14 +1,16 @@
-"""Exercises of lessons 05 to 07 and 10: the patch, its surface, its distance from the truth, the paper's tables."""
+"""Exercises of lessons 05 and 06: the patch and its surface."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy import ndimage
-from scipy.spatial import cKDTree
 from skimage.measure import marching_cubes
 from skimage.morphology import convex_hull_image
 
 from .task import Exercise, different_pixels, largest_difference, small_head
+
+_CORNERS = np.ones((3, 3), bool)  # pixels that touch at a corner belong together
+_SIDES = ndimage.generate_binary_structure(2, 1)
 
 
 def _curves():
@@ -40,12 +42,13 @@ def _dented():
     dent = ring & ~((row < -31) & (np.abs(col) < 9))
     speck = dent.copy()
     speck[82, 43:47] = False
-    bay = dent & ~((col > 33) & (np.abs(row) < 5))
-    return [(dent, 10), (speck, 10), (bay, 10)]
+    pits = (col >= 33) & (col < 35) & (row >= -6) & (row < 0) | (col >= 35) & (col < 37) & (row >= 0) & (row < 6)
+    size = np.bincount(ndimage.label(convex_hull_image(dent) & ~dent)[0].ravel())
+    return [(dent, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]  # just enough; an island; a corner
 
 
-def _lost(bone, min_pixels):
-    labels, n = ndimage.label(convex_hull_image(bone) & ~bone)
+def _lost(bone, min_pixels, touching=_CORNERS):
+    labels, n = ndimage.label(convex_hull_image(bone) & ~bone, touching)
     sizes = np.bincount(labels.ravel(), minlength=n + 1)
     sizes[0] = 0
     keep = sizes >= min_pixels
@@ -53,12 +56,8 @@ def _lost(bone, min_pixels):
     return keep[labels]
 
 
-def _with_islands(bone, min_pixels):
-    return _lost(bone, 1)
-
-
-def _with_cavity(bone, min_pixels):
-    labels, n = ndimage.label(convex_hull_image(bone) & ~bone)
+def _with_cavity(bone, min_pixels, touching=_CORNERS):
+    labels, n = ndimage.label(convex_hull_image(bone) & ~bone, touching)
     keep = np.bincount(labels.ravel(), minlength=n + 1) >= min_pixels
     keep[0] = False
     return keep[labels]
@@ -72,7 +71,8 @@ def _meshes():
         vertices, faces, _, _ = marching_cubes(ball.astype(np.float32), 0.5, spacing=spacing, method="lorensen")
         volume = np.einsum("ij,ij->", vertices[faces[:, 0]], np.cross(vertices[faces[:, 1]], vertices[faces[:, 2]]))
         meshes.append((vertices.astype(float) + shift, faces if volume > 0 else faces[:, ::-1].copy()))
-    return meshes
+    (*_, (vertices, faces)) = meshes
+    return [*meshes[:2], (vertices, faces[:, ::-1].copy())]  # the last one inside out: a negative volume
 
 
 def _parts_of_volume(vertices, faces):
@@ -83,54 +83,6 @@ def _parts_of_volume(vertices, faces):
 def _voxel_places():
     index = np.array([[0.0, 0.0, 0.0], [10.0, 4.0, 2.0], [3.5, 90.0, 41.5]])
     return [(index, np.array(s)) for s in ((3.0, 1.75, 1.75), (2.5, 0.45, 0.45), (1.0, 2.0, 4.0))]
-
-
-def _clouds():
-    grid = np.stack(np.meshgrid(np.arange(20.0), np.arange(20.0), [0.0]), axis=-1).reshape(-1, 3)
-    bump = grid.copy()
-    bump[::25, 2] += 6.0
-    part = grid[grid[:, 0] < 12]
-    return [(grid, grid + np.array([0.0, 0.0, 1.5])), (bump, grid), (part, grid)]
-
-
-def _both_ways(a, b):
-    return np.concatenate([cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]])
-
-
-def _planes():
-    points = np.array([[50.0, 0.0, 10.0], [-20.0, 33.0, 4.0], [2.0, -70.0, 30.0]])
-    lean = np.array([0.96, 0.28, 0.0])
-    return [
-        (points, np.array([1.0, 0.0, 0.0]), np.zeros(3)),
-        (points, np.array([1.0, 0.0, 0.0]), np.array([2.3, 0.0, 0.0])),
-        (points, lean, np.array([2.3, -6.1, 40.0])),
-    ]
-
-
-def _mirrored(points, normal, origin):
-    return points - 2 * ((points - origin) @ normal)[:, None] * normal
-
-
-def _records():
-    def entry(plane, status, theta0, n_iter):
-        return {"plane": plane, "status": status, "theta0": theta0, "n_iter": n_iter}
-
-    slices = [
-        entry(20, "hull", [0.0, 0.0], [0, 0]),
-        entry(21, "balloon", [8.5, 12.0], [44, 61]),
-        entry(22, "balloon", [14.0, 17.5], [90, 75]),
-        entry(23, "balloon", [21.0, 28.0], [131, 140]),
-    ]
-    return [(slices, "theta0", 0), (slices, "theta0", 1), (slices, "n_iter", 0)]
-
-
-def _range(slices, key, side):
-    values = [s[key][side] for s in slices if s["status"] == "balloon"]
-    return min(values), max(values)
-
-
-def _arcs():
-    return [(50.0, 75.0), (20.0, 75.0), (90.0, 80.0)]
 
 
 SOLID = {
@@ -184,7 +136,17 @@ SOLID = {
         "a mask like the one given",
         (
             (_with_cavity, "The brain's place is in it: drop the biggest region too."),
-            (_with_islands, "Small islands are left: drop regions under min_pixels."),
+            (lambda b, m: _with_cavity(b, m, _SIDES), "The brain's place is in it: drop the biggest region too."),
+            (lambda b, m: _lost(b, 1), "Small islands are left: drop regions under min_pixels."),
+            (
+                lambda b, m: _lost(b, m, _SIDES),
+                "Pixels that touch at a corner belong together: ndimage.label(..., np.ones((3, 3))).",
+            ),
+            (lambda b, m: _lost(b, m + 1), "A region of just min_pixels stays: >=, not >."),
+            (
+                lambda b, m: _lost(b, m + 1, _SIDES),
+                "A region of just min_pixels stays (>=), and pixels that touch at a corner belong together.",
+            ),
             (
                 lambda b, m: convex_hull_image(b) & ~b,
                 "This is the whole difference: the biggest region and the islands must go.",
@@ -195,7 +157,7 @@ SOLID = {
             ),
         ),
         (
-            "convex_hull_image(bone) & ~bone, then label.",
+            "convex_hull_image(bone) & ~bone, then label with np.ones((3, 3)).",
             "Count each label; 0 is background.",
             "keep = sizes >= min_pixels; keep[sizes.argmax()] = False; keep[labels]",
         ),
@@ -209,7 +171,12 @@ SOLID = {
         1e-6,
         "one number",
         (
+            (lambda v, f: _parts_of_volume(v, f).sum(), "Six times too big: a tetrahedron is a sixth of its box."),
             (lambda v, f: _parts_of_volume(v, f).sum() / 3, "Twice too much: a tetrahedron is a sixth of its box."),
+            (
+                lambda v, f: abs(_parts_of_volume(v, f).sum()) / 6,
+                "No abs: a mesh turned inside out has a negative volume, and that is how one finds out.",
+            ),
             (
                 lambda v, f: np.abs(_parts_of_volume(v, f)).sum() / 6,
                 "Keep the signs: faces seen from behind take away.",
@@ -237,115 +204,15 @@ SOLID = {
         (
             (lambda i, s: i, "These are still voxels: 23 of them are not 23 mm."),
             (lambda i, s: i * s[::-1], "The spacing goes with (plane, row, col); do not turn it round."),
+            (lambda i, s: i[:, ::-1] * s, "The columns of the index are turned round: keep (plane, row, col)."),
+            (lambda i, s: (i * s)[:, ::-1], "These are mm, but with their columns turned round: keep the axes given."),
+            (lambda i, s: (i + 0.5) * s, "Half a voxel off: index 0 is the centre of a voxel, and its place is 0 mm."),
+            (lambda i, s: (i - 0.5) * s, "Half a voxel off: index 0 is the centre of a voxel, and its place is 0 mm."),
             (lambda i, s: i / s, "Divided where it should multiply: mm = voxels x mm per voxel."),
             (lambda i, s: i * s.mean(), "One mean spacing squashes the head: each axis has its own."),
         ),
         ("How many mm is one step along each axis?", "numpy multiplies row by row.", "index * spacing"),
         "the head has its true proportions.",
     ),
-    "7.1": Exercise(
-        _clouds,
-        lambda a, b: np.percentile(_both_ways(a, b), 95),
-        largest_difference,
-        "mm",
-        1e-6,
-        "one number",
-        (
-            (
-                lambda a, b: np.percentile(cKDTree(b).query(a)[0], 95),
-                "One way only: what is missing in a is not seen. Look from b as well.",
-            ),
-            (lambda a, b: _both_ways(a, b).max(), "This is the largest distance; HD95 leaves the worst 5 percent out."),
-            (lambda a, b: _both_ways(a, b).mean(), "This is the mean distance (ASSD), not the 95th percentile."),
-            (
-                lambda a, b: np.percentile(np.linalg.norm(a[:, None] - b[None], axis=-1), 95),
-                "This takes every pair of points; wanted is the distance to the nearest one.",
-            ),
-        ),
-        (
-            "cKDTree(b).query(a)[0] are the distances from a to b.",
-            "Take both ways and join them.",
-            "np.percentile(np.concatenate([...]), 95)",
-        ),
-        "missing parts count as much as extra ones.",
-    ),
-    "7.2": Exercise(
-        _planes,
-        _mirrored,
-        largest_difference,
-        "mm",
-        1e-6,
-        "an array like the points",
-        (
-            (lambda p, n, o: p - ((p - o) @ n)[:, None] * n, "The points stop on the plane: go twice as far."),
-            (
-                lambda p, n, o: p - 2 * (p @ n)[:, None] * n,
-                "The plane does not pass through 0, 0, 0: measure from the origin given.",
-            ),
-            (lambda p, n, o: p * [-1, 1, 1], "This mirrors at x = 0; the head stands aside and leans."),
-            (lambda p, n, o: 2 * o - p, "This is a point reflection: only the part along the normal may change sign."),
-        ),
-        (
-            "How far is a point from the plane? (points - origin) @ normal.",
-            "Go back twice that far along the normal.",
-            "points - 2 * distance[:, None] * normal",
-        ),
-        "the sound side has crossed the plane.",
-    ),
-    "10.1": Exercise(
-        _records,
-        _range,
-        largest_difference,
-        "",
-        1e-9,
-        "two numbers: smallest and largest",
-        (
-            (
-                lambda s, k, i: (min(x[k][i] for x in s), max(x[k][i] for x in s)),
-                "Slices filled by the hull have no balloon: leave them out.",
-            ),
-            (lambda s, k, i: _range(s, k, 1 - i), "Outer is side 0, inner is side 1."),
-            (lambda s, k, i: _range(s, k, i)[::-1], "The smallest comes first."),
-            (
-                lambda s, k, i: (np.mean([x[k][i] for x in s[1:]]),) * 2,
-                "This is the mean; the paper's tables give smallest and largest.",
-            ),
-        ),
-        (
-            "Which slices have a balloon? Look at their status.",
-            "Take s[key][side] of those.",
-            "min(values), max(values)",
-        ),
-        "a row of Tables 1 and 2.",
-    ),
-    "10.2": Exercise(
-        _arcs,
-        lambda chord, radius: np.degrees(np.arcsin(chord / 2 / radius)),
-        largest_difference,
-        "degrees",
-        1e-6,
-        "one number",
-        (
-            (lambda c, r: np.arcsin(c / 2 / r), "This is in radians; the paper's tables are in degrees."),
-            (
-                lambda c, r: np.degrees(np.arcsin(min(c / r, 1))),
-                "Half the chord belongs to the right angle: chord / 2.",
-            ),
-            (
-                lambda c, r: np.degrees(np.arctan(c / 2 / r)),
-                "The radius is the long side of the right angle's triangle: a sine, not a tangent.",
-            ),
-            (
-                lambda c, r: np.degrees(2 * np.arcsin(c / 2 / r)),
-                "This is the angle at the centre; the tangent leans by half of it.",
-            ),
-        ),
-        (
-            "Draw the radius to one end and to the middle of the chord.",
-            "sin theta = (chord / 2) / radius.",
-            "np.degrees(np.arcsin(chord / 2 / radius))",
-        ),
-        "angles say how wide a gap was.",
-    ),
 }
-"""Lessons 05 to 07 and 10."""
+"""Lessons 05 and 06."""

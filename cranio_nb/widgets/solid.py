@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import evaluate
 from .. import surface as stage
-from ..canvas import BLUE, GREY, ORANGE, RGB, SKY, VERMILLION, Canvas, rgb_of, round_length
+from ..canvas import BLUE, GREEN, GREY, ORANGE, RGB, SKY, VERMILLION, Canvas, rgb_of, round_length
 from ..chart2d import Chart
 from ..errors import InputRefused
 from ..mesh import Mesh
@@ -44,25 +44,35 @@ def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
     moved = lru_cache(maxsize=None)(lambda n: np.linalg.norm(smoothed(n).vertices - raw.vertices, axis=1))
     controls = (Slider("steps", "smoothing steps", 0, 48, 24),)
     alt = "The shaded surface of the patch after smoothing, and a histogram of how far its vertices moved."
-    half = float(np.linalg.norm(patch.spacing) / 2)
-    return Panel(controls, lambda steps: surface_view(*seen(steps), moved(steps), half, steps), alt=alt)
+    bounds = float(patch.spacing.max() / 2), float(np.linalg.norm(patch.spacing) / 2)
+    return Panel(controls, lambda steps: surface_view(*seen(steps), moved(steps), bounds, steps), alt=alt)
 
 
-def surface_view(rgb: RGB, px: float, moved: NDArray[np.float64], half: float, steps: int) -> View:
-    """The surface and its deviation from marching cubes, mm; `half` is half a voxel's diagonal."""
+def surface_view(rgb: RGB, px: float, moved: NDArray[np.float64], bounds: tuple[float, float], steps: int) -> View:
+    """The surface and its deviation from marching cubes, mm.
+
+    `bounds` are half the longest side and half the diagonal of a voxel: from its middle to a wall, and to a corner.
+    """
+    wall, corner = bounds
     canvas = Canvas(_SIDE + _CHART, _SIDE)
     put_view(canvas, rgb, px)
-    counts, edges = np.histogram(moved, 60, (0, half * 1.05))
-    chart = Chart((_SIDE, 20, _CHART, 320), (0, half * 1.05), (0.8, max(10.0, 1.5 * counts.max())), log=True)
+    counts, edges = np.histogram(moved, 60, (0, corner * 1.05))
+    chart = Chart((_SIDE, 20, _CHART, 320), (0, corner * 1.05), (0.8, max(10.0, 1.5 * counts.max())), log=True)
     chart.frame(canvas, "vertices", "moved from marching cubes (mm)")
     chart.bars(canvas, edges, np.maximum(counts, 0.8), SKY)
     chart.upright(canvas, moved.mean(), BLUE, width=2.5)
-    chart.upright(canvas, half, VERMILLION, dash=(6, 4))
-    legend = [(BLUE, "line", f"mean {moved.mean():.2f} mm"), (VERMILLION, "dash", f"half a voxel, {half:.2f} mm")]
+    chart.upright(canvas, wall, GREEN, dash=(6, 4))
+    chart.upright(canvas, corner, VERMILLION, dash=(6, 4))
+    legend = [
+        (BLUE, "line", f"mean {moved.mean():.2f} mm"),
+        (GREEN, "dash", f"half a voxel's longest side, {wall:.2f} mm"),
+        (VERMILLION, "dash", f"half a voxel's diagonal, {corner:.2f} mm"),
+    ]
     canvas.legend(_SIDE + 56, 352, legend)
     what = "Marching cubes as they come" if steps == 0 else f"{steps} smoothing steps"
     line = f"{what}: vertices moved {moved.mean():.2f} mm on average, {moved.max():.2f} mm at most; "
-    return View(canvas.array(), line + f"the bound is half a voxel, {half:.2f} mm from corner to corner.")
+    line += f"half a voxel is {wall:.2f} mm along its longest side, {corner:.2f} mm to a corner."
+    return View(canvas.array(), line)
 
 
 def evaluation(prosthesis: Prosthesis, truth: Prosthesis) -> Panel:

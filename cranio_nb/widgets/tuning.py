@@ -28,6 +28,7 @@ FILE = "cranio_nb_parameters.json"
 SLICES = ("axial, as in the paper", "fans from inside the head")
 _WORSE = "#B34E00"  # vermillion, dark enough for letters
 _WIDTH, _HEIGHT, _TOP = 440, 440, 1.5  # px, px, mm at the upper end of the colour scale
+_CAPTION = 30  # px above the map
 _MEASURES = (
     ("DSC", "", 3, True),
     ("border DSC", "", 3, True),
@@ -139,8 +140,9 @@ def measures(made: Prosthesis, check: TruthCheck) -> tuple[float, ...]:
 
 def tuner_view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
     """Map and table of a design, beside the numbers of the first one."""
-    canvas = Canvas(_WIDTH + 390, _HEIGHT)
-    put_view(canvas, coloured(now[1].seen, _TOP), now[1].px)
+    canvas, seen = Canvas(_WIDTH + 390, _HEIGHT + _CAPTION), Canvas(_WIDTH + 1, _HEIGHT)
+    put_view(seen, coloured(now[1].seen, _TOP), now[1].px)
+    canvas.inlay(seen, 0, _CAPTION)
     canvas.text(14, 22, f"distance of the outer side: blue 0, yellow {_TOP:g} mm and more", size=12, colour=GREY)
     left = _WIDTH + 20
     for x, name in ((left + 240, "at the start"), (left + 350, "now")):

@@ -42,6 +42,7 @@ from cranio_nb import (
 from cranio_nb.mesh import Mesh
 from cranio_nb.mesh_check import check_mesh
 from cranio_nb.methods import slicewise
+from cranio_nb.prosthesis import OUTER
 
 # %% [markdown]
 # ## Parameters
@@ -51,7 +52,8 @@ from cranio_nb.methods import slicewise
 # | `smooth` | place vertices between the voxels | | no |
 # | `n_steps` | steps of the relaxation | 1 | |
 #
-# *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
+# *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
+# scan of your own.
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
@@ -90,8 +92,11 @@ classroom.picture(figure, alt, f"smooth, area {smooth.areas.sum() / 100:.1f} cm2
 # <details>
 # <summary>Answer</summary>
 #
-# One plane high (2.5 mm) where the surface is flat, one pixel deep (0.9 mm) where it is steep. Stairs also add
-# area: on a slope of 45 degrees by up to 41 %, however fine the voxels are. Volume has no such flaw.
+# One plane high (2.5 mm) where the surface is nearly horizontal, one pixel deep (0.9 mm) where it is nearly vertical.
+#
+# Stairs also add area, however fine the voxels are: the faces of cubes add 41 % on a slope of 45 degrees. Marching
+# cubes cuts the corners of the steps, so it adds nothing at 45 degrees and 8 % on a slope of 1 in 2. Flat voxels do
+# it worse: here raw is 12 % more than smooth. Volume has no such flaw.
 #
 # </details>
 #
@@ -109,24 +114,40 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 
 # %% [markdown]
 # **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
-# leave the bound by taking very many?
+# leave the bound by taking very many? Where will the vertices pile up that are stopped by it?
 
 # %% tags=["nbval-check-output"]
 widgets.surface(patch)
+
+# %% tags=["nbval-check-output"]
+for steps in (0, 1, 5, 10, 24, 200):
+    after = surface.extract(patch, n_steps=steps)
+    moved = surface.deviation(raw, after)
+    print(f"{steps:3} steps: area {after.areas.sum() / 100:.2f} cm2, moved {moved.mean:.2f} mm")
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
-# About ten steps bring most of it, and two hundred hardly more than the default 24. You cannot leave the bound: each vertex is clipped to its box of half a voxel in every step, and what
-# would go further stops at the wall.
+# About ten steps bring most of it, and two hundred hardly more than the default 24. (0 steps already put the vertices
+# between the voxels by distance; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
+# clipped to its box of half a voxel in every step.
+#
+# What would go further stops at a wall of the box. Most walls that matter here are half a plane away: hence the pile
+# near 1.25 mm. Only a vertex that is stopped along all three axes sits in a corner of the box, at 1.40 mm.
 #
 # </details>
 #
 # ## 3. Can it be built?
 #
-# A solid has an inside. Every edge joins two faces, neighbours agree on what is outside, and nothing passes through
-# itself.
+# A solid has an inside. What the check counts:
+#
+# - *open edge*: an edge that does not join exactly two faces; the skin has a hole there;
+# - *flipped edge*: its two faces disagree on which side is outside;
+# - *pinch*: two parts of the skin touch in a single point;
+# - *parts*: pieces that no edge connects; an implant should be one for each hole;
+# - *crossings*: pairs of faces that cut through each other;
+# - *manifold*: no open edges, no flipped ones, no pinches: around every point the skin is like one bent sheet of paper.
 
 # %% tags=["nbval-check-output"]
 report = check_mesh(smooth)
@@ -137,11 +158,16 @@ print(
 print(f"parts {report.n_parts}, crossings {report.n_crossings}, sound: {report.sound}")
 print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
 
+# %% [markdown]
+# **Can it?** Yes, if it is `sound` (manifold, of positive volume, without crossings), in one part for each hole, and
+# nowhere too thin: below about 2 mm a workshop will warn you. All this holds here. Whether it can also be put *in* is
+# another question: a rim that widens inwards holds it back.
+
 # %% tags=["nbval-check-output"]
 data = implant.implant_data(smooth)
 print(f"{data.volume_cm3:.1f} cm3")
 for material, mass in data.mass_g.items():
-    print(f"{material:10} {mass:5.1f} g")
+    print(f"{material:10} {implant.DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
 
 # %% tags=["nbval-check-output"]
 path = Path(tempfile.mkdtemp()) / "prosthesis.stl"
@@ -157,14 +183,14 @@ print(f"{path.name}: {path.stat().st_size} bytes = 84 + 50 x {len(smooth.faces)}
 
 # %% tags=["raises-exception"]
 sides = surface.face_sides(smooth, bone, openings[0].head_centre)
-skin = Mesh(smooth.vertices, smooth.faces[sides == 0])
+skin = Mesh(smooth.vertices, smooth.faces[sides == OUTER])
 export.write_mesh(skin, path)
 
 # %% [markdown]
 # ## Exercises
 #
 # **Exercise 6.1.** The volume of a closed mesh. Each face and the origin make a tetrahedron of (signed) volume
-# a . (b x c) / 6. Add them up.
+# a . (b x c) / 6. Add them up and keep the sign: a mesh turned inside out has a negative volume.
 
 
 # %% tags=["solution"]
