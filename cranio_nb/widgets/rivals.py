@@ -200,6 +200,6 @@ def _mirrored_slice(bone: Volume, mirror: SymmetryPlane, plane: int) -> Canvas:
     if len(rows):
         canvas.line(window.px(np.column_stack([rows, side[rows].argmax(axis=1) - 0.5])), BLACK, width=1.5, dash=(8, 5))
     dress(canvas, window, bone, plane)
-    entries = [(BONE, "area", "both"), (ORANGE, "area", "bone only"), (SKY, "area", "mirror image only")]
-    canvas.legend(6, 6, [*entries, (BLACK, "dash", "plane")])
+    entries = [(BONE, "area", "both"), (ORANGE, "area", "bone"), (SKY, "area", "mirror")]
+    canvas.legend(110, 170, [*entries, (BLACK, "dash", "plane")])  # within the ring of bone
     return canvas
