@@ -102,7 +102,7 @@ class SymmetryPlane:
 
 
 @dataclass(frozen=True, eq=False)
-class _Surface:
+class OuterSurface:
     """The outer surface of the vault along rays on an azimuthal-equidistant chart; nan where it is not seen.
 
     `axes` rows: left, back, up; `radius` (M, M) mm; `points` and outward `normals` (M, M, 3).
@@ -138,7 +138,7 @@ def find(bone: Volume, centre: Array) -> SymmetryPlane:
     InputRefused
         ``NoSymmetry`` when too little of the vault has a counterpart on the other side.
     """
-    surface = _look(bone, np.asarray(centre, float))
+    surface = look(bone, np.asarray(centre, float))
     seen = np.isfinite(surface.normals).all(axis=-1)
     points = surface.points[seen] - surface.eye
     normal, shift = _start(surface, points[::3])
@@ -157,8 +157,20 @@ def find(bone: Volume, centre: Array) -> SymmetryPlane:
     return _described(bone, surface, normal, shift, float(np.median(np.abs(distances[paired]))), n_iter, moved <= _TOL)
 
 
+def residuals(surface: OuterSurface, plane: SymmetryPlane) -> Array:
+    """Signed distance in mm of the mirror image of each ray's point from the surface, shape (M, M).
+
+    nan where the ray or its mirror image meets no bone. Any plane may be asked about; `find` gives the one that makes
+    these small.
+    """
+    seen = np.isfinite(surface.normals).all(axis=-1)
+    out = np.full(surface.radius.shape, np.nan)
+    out[seen] = _distances(surface, plane.mirror(surface.points[seen]) - surface.eye)[0]
+    return out
+
+
 def _described(
-    bone: Volume, surface: _Surface, normal: Array, shift: float, residual: float, n_iter: int, converged: bool
+    bone: Volume, surface: OuterSurface, normal: Array, shift: float, residual: float, n_iter: int, converged: bool
 ) -> SymmetryPlane:
     """The plane with its place in the scan."""
     point = surface.eye + shift * normal
@@ -169,8 +181,8 @@ def _described(
     )
 
 
-def _look(bone: Volume, eye: Array) -> _Surface:
-    """See the outer surface from the eye, smoothed over neighbouring rays, without the edges of its holes."""
+def look(bone: Volume, eye: Array) -> OuterSurface:
+    """See the outer surface from the eye (world mm), smoothed over neighbouring rays, without the edges of holes."""
     axes = _axes(bone)
     half = int(np.ceil(_SKY / _STEP)) + _RIM + 2
     polar = _polar(2 * half + 1)
@@ -184,7 +196,7 @@ def _look(bone: Volume, eye: Array) -> _Surface:
     points = eye + directions * radius[..., None]
     normals = np.cross(np.gradient(points, axis=1), np.gradient(points, axis=0))
     normals *= np.sign(np.einsum("vui,vui->vu", normals, directions))[..., None]
-    return _Surface(eye, axes, radius, points, normals / np.linalg.norm(normals, axis=-1, keepdims=True))
+    return OuterSurface(eye, axes, radius, points, normals / np.linalg.norm(normals, axis=-1, keepdims=True))
 
 
 def _axes(bone: Volume) -> Array:
@@ -245,7 +257,7 @@ def _reflected(points: Array, normal: Array, shift: float) -> Array:
     return points - 2 * (points @ normal - shift)[:, None] * normal
 
 
-def _distances(surface: _Surface, away: Array) -> tuple[Array, Array]:
+def _distances(surface: OuterSurface, away: Array) -> tuple[Array, Array]:
     """Signed distance (n,) of points (n, 3) seen from the eye from the surface, nan where unseen; its normals."""
     at = surface.locate(away)
     radius, *normal = (
@@ -258,7 +270,7 @@ def _distances(surface: _Surface, away: Array) -> tuple[Array, Array]:
     return (length - radius) * lean, normals
 
 
-def _start(surface: _Surface, points: Array) -> tuple[Array, float]:
+def _start(surface: OuterSurface, points: Array) -> tuple[Array, float]:
     """The best of many planes turned about the up and the back axis, each in the middle between the two sides."""
     best = (np.inf, surface.axes[0], 0.0)
     for yaw in _YAWS:
@@ -274,7 +286,7 @@ def _start(surface: _Surface, points: Array) -> tuple[Array, float]:
     return best[1], best[2]
 
 
-def _step(surface: _Surface, points: Array, normal: Array, shift: float) -> tuple[Array, float, float]:
+def _step(surface: OuterSurface, points: Array, normal: Array, shift: float) -> tuple[Array, float, float]:
     """One Gauss-Newton step with Tukey's weights; also how far it moved the plane (mm, and 100 mm times radians)."""
     across = np.linalg.svd(normal[None])[2][1:]
     height = points @ normal - shift

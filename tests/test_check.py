@@ -67,6 +67,7 @@ def holes(*borders, structure="None", compare="<=", sizes="s", given="mask"):
         "    return out"
     )
 
+
 REGIONS_4 = (
     "l, n = ndimage.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel(), minlength=n + 1); s[0] = 0"
 )
@@ -241,6 +242,23 @@ WRONG = {
         ("distance = (points - origin) @ normal; return points - 2 * distance * normal", "distance[:, None]"),
         ("return points + 2 * np.outer((points - origin) @ normal, normal)", "sign is wrong"),
         ("p = points - origin; return p - 2 * np.outer(p @ normal, normal)", "left there"),
+    ],
+    "8.1": [
+        ("return a[0] - b[0], (a[0] + b[0]) / 2", "length 1"),
+        ("n = a[0] - b[0]; return n / np.linalg.norm(n), a.mean(axis=0)", "half-way"),
+        ("return np.array([1, 0, 0]), (a.mean(axis=0) + b.mean(axis=0)) / 2", "head leans"),
+        ("n = b[0] - a[0]; return n / np.linalg.norm(n), np.zeros(3)", "0, 0, 0"),
+    ],
+    "8.2": [
+        ("return h", "the largest"),
+        ("return h / 2", "exact volume"),
+        ("return 2 / 3 * h", "in a slice"),
+        ("return np.pi * h * (3 * a**2 + h**2) / 6", "divide it"),
+    ],
+    "8.3": [
+        ("return convex_hull_image(bone) & ~bone", "brain's place"),
+        ("return convex_hull_image(bone) ^ (convex_hull_image(inner) & convex_hull_image(bone))", "Bone is still"),
+        ("return convex_hull_image(bone) & ~(bone | inner)", "its hull"),
     ],
     "10.1": [
         ("v = [s[key][side] for s in slices]; return min(v), max(v)", "no balloon"),

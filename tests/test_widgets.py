@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cranio_nb import balloon, evaluate, features, run, segment, widgets
+from cranio_nb import balloon, chart, evaluate, features, run, segment, symmetry, widgets
 from cranio_nb.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
 from cranio_nb.catalogue import check_options, default_options
 from cranio_nb.curves import ChordFrame, GapEnds, cubic
 from cranio_nb.errors import InputRefused
-from cranio_nb.methods import slicewise
-from cranio_nb.prosthesis import INNER
+from cranio_nb.methods import slicewise, you
+from cranio_nb.prosthesis import INNER, OUTER
 from cranio_nb.volume import Volume
 from cranio_nb.widgets import inflation, tuning
 
@@ -90,6 +90,8 @@ def make_all(ct, skull, opened, arch, made, true):
         "patch": widgets.patch(skull, opened),
         "surface": widgets.surface(made.patch),
         "evaluation": widgets.evaluation(made, true),
+        "guiding_points": widgets.guiding_points(skull, opened, true),
+        "symmetry_plane": widgets.symmetry_plane(skull, opened),
     }
 
 
@@ -132,6 +134,7 @@ def test_a_static_panel_is_the_same_on_every_run_and_makes_no_widget(static, pan
 def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
     moves = {"ct_viewer": ("width", 400), "threshold": ("hu", 900), "features": ("reach", 25.0), "balloon": ("n", 41)}
     moves |= {"patch": ("curves", False), "surface": ("steps", 0), "evaluation": ("side", "inner")}
+    moves |= {"guiding_points": ("n", 5), "symmetry_plane": ("turn", 4.0)}
     for name, panel in panels.items():
         assert close(pixels_of(panel), panel.view.rgb), name
         before = panel.front.image.value
@@ -283,6 +286,36 @@ def test_the_map_of_distances_shows_the_distances_of_the_nodes(design, true):
     shown = seen.seen[np.isfinite(seen.seen)]
     assert 0 <= shown.min() and shown.max() <= seen.distances.max() + 1e-6
     assert np.median(shown) == pytest.approx(np.median(seen.distances), rel=0.3)
+
+
+def test_guiding_points_say_what_the_method_fills(static, skull, lesions, true):
+    panel = widgets.guiding_points(skull(), lesions()[0], true).set(n=8)
+    made = you.fill_between(skull(), lesions()[0], you.find_guides(chart.look(skull(), lesions()[0]), 8))
+    off = evaluate.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
+    assert panel.view.line.startswith("8 guiding points: ")
+    assert f"{off.mean():.2f} mm from the true surface on average, {off.max():.2f} mm at most" in panel.view.line
+
+
+def test_guiding_points_need_no_truth(static, skull, lesions):
+    line = widgets.guiding_points(skull(), lesions()[0]).view.line
+    assert line.startswith("12 guiding points") and "true" not in line
+
+
+def test_the_found_plane_has_the_least_residual(static, skull, lesions):
+    found = symmetry.find(skull(), lesions()[0].head_centre)
+    panel = widgets.symmetry_plane(skull(), lesions()[0])
+    moves = ({}, {"turn": 4.0}, {"turn": 0.0, "lean": -5.0}, {"lean": 0.0, "shift": 3.0})
+    lines = [panel.set(**move).view.line for move in moves]
+    least, *others = (float(line.split("residual ")[1].split(" mm")[0]) for line in lines)
+    assert least == pytest.approx(found.residual, abs=0.01)
+    assert all(other > 2 * least for other in others)
+
+
+def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, lesions):
+    centre = lesions()[0].head_centre
+    found, surface = symmetry.find(skull(), centre), symmetry.look(skull(), centre)
+    other = widgets.rivals.moved(found, surface, turn=0.0, lean=0.0, shift=1.0)
+    np.testing.assert_allclose(other.mirror(centre) - found.mirror(centre), 2 * found.normal, atol=1e-9)
 
 
 def test_the_tuner_hands_its_parameters_to_the_design_command(static, phantom, tmp_path):

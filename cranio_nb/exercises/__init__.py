@@ -3,10 +3,12 @@
 from .curves import CURVES
 from .image import IMAGE
 from .measure import MEASURE
+from .rivals import RIVALS
 from .solid import SOLID
 from .task import Exercise
 
-EXERCISES: dict[str, Exercise] = {**IMAGE, **CURVES, **SOLID, **MEASURE}
+_ALL = {**IMAGE, **CURVES, **SOLID, **MEASURE, **RIVALS}
+EXERCISES: dict[str, Exercise] = dict(sorted(_ALL.items(), key=lambda pair: [int(n) for n in pair[0].split(".")]))
 """By number, lesson by lesson."""
 
 __all__ = ["EXERCISES", "Exercise"]

@@ -10,6 +10,7 @@ from .bone import ct_viewer, threshold
 from .gap import features
 from .inflation import balloon
 from .panel import Panel, View, static_twin
+from .rivals import guiding_points, symmetry_plane
 from .solid import evaluation, surface
 from .stack import patch
 from .tuning import Tuner, tuner
@@ -22,10 +23,12 @@ __all__ = [
     "ct_viewer",
     "evaluation",
     "features",
+    "guiding_points",
     "mode",
     "patch",
     "static_twin",
     "surface",
+    "symmetry_plane",
     "threshold",
     "tuner",
 ]

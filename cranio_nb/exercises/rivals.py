@@ -1,0 +1,150 @@
+"""Exercises of lesson 08: a symmetry plane from pairs, the depth of a flat lid, a lid between two hulls."""
+
+from __future__ import annotations
+
+import numpy as np
+from skimage.morphology import convex_hull_image
+
+from .task import Exercise, different_pixels, largest_difference
+
+
+def _pairs():
+    a = np.array([[60.0, 10.0, 5.0], [45.0, -50.0, 30.0], [30.0, 40.0, 70.0], [71.0, 2.0, -20.0]])
+    found = []
+    for normal, point in (
+        ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
+        ([1.0, 0.0, 0.0], [2.3, 0.0, 0.0]),
+        ([0.96, 0.28, 0.0], [2.3, -6.1, 40.0]),
+    ):
+        n = np.array(normal)
+        found.append((a, a - 2 * ((a - point) @ n)[:, None] * n))
+    return found
+
+
+def _plane(a, b):
+    across = (a - b).sum(axis=0)
+    return across / np.linalg.norm(across), (a + b).mean(axis=0) / 2
+
+
+def _plane_error(answer, right):
+    """How far the mirror images of a few points lie apart, mm."""
+    points = np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 50.0, 0.0], [0.0, 0.0, 50.0]])
+    images = [
+        points - 2 * ((points - np.asarray(p, float)) @ np.asarray(n, float))[:, None] * np.asarray(n, float)
+        for n, p in (answer, right)
+    ]
+    return largest_difference(*images)
+
+
+def _caps():
+    return [(30.0, 6.0), (50.0, 20.0), (20.0, 1.0)]
+
+
+def _mean_depth(a, h):
+    return h / 2 + h**3 / (6 * a**2)
+
+
+def _open_rings():
+    row, col = np.indices((90, 90)) - 45
+    radius, cases = np.hypot(row, 1.15 * col), []
+    for half, up in ((9, True), (16, True), (14, False)):
+        gap = (row < 0 if up else row > 0) & (np.abs(col) < half)
+        rim = (radius < 28.5) & (radius > 27.0)
+        cases.append(((radius < 36) & (radius > 28) & ~gap, rim & ~gap))
+    return cases
+
+
+def _lid(bone, inner):
+    return convex_hull_image(bone) & ~convex_hull_image(inner) & ~bone
+
+
+RIVALS = {
+    "8.1": Exercise(
+        _pairs,
+        _plane,
+        _plane_error,
+        "mm",
+        1e-6,
+        "two arrays of 3 numbers: the unit normal and a point",
+        (
+            (
+                lambda a, b: ((a - b).sum(axis=0), (a + b).mean(axis=0) / 2),
+                "The normal must have length 1: divide by it.",
+            ),
+            (
+                lambda a, b: (_plane(a, b)[0], a.mean(axis=0)),
+                "The plane passes through the points themselves: it lies half-way between the two of a pair.",
+            ),
+            (
+                lambda a, b: (np.array([1.0, 0.0, 0.0]), (a + b).mean(axis=0) / 2),
+                "This takes x for the normal; the head leans: the normal runs from one point of a pair to the other.",
+            ),
+            (
+                lambda a, b: (_plane(a, b)[0], np.zeros(3)),
+                "The plane need not pass through 0, 0, 0: a point half-way between a pair lies on it.",
+            ),
+        ),
+        (
+            "Which way does one go from a point to its partner?",
+            "The normal is the direction of a - b; half-way between a and b lies the plane.",
+            "d = (a - b).sum(axis=0); d / np.linalg.norm(d), (a + b).mean(axis=0) / 2",
+        ),
+        "the pairs' own plane, wherever the head lies.",
+    ),
+    "8.2": Exercise(
+        _caps,
+        _mean_depth,
+        largest_difference,
+        "mm",
+        1e-6,
+        "one number",
+        (
+            (lambda a, h: h, "This is the depth in the middle, the largest; wanted is the mean."),
+            (
+                lambda a, h: h / 2,
+                "Nearly: h / 2 is the limit for flat caps. Divide the cap's exact volume by the hole's area.",
+            ),
+            (lambda a, h: 2 * h / 3, "This is the mean of a flat arc in a slice; in space the low rim has more area."),
+            (
+                lambda a, h: np.pi * h * (3 * a**2 + h**2) / 6,
+                "This is the volume of the cap; divide it by the area of the hole.",
+            ),
+        ),
+        (
+            "Mean depth = volume between cap and lid / area of the lid.",
+            "The cap's volume is pi h (3 a^2 + h^2) / 6, the lid's area pi a^2.",
+            "h * (3 * a**2 + h**2) / (6 * a**2)",
+        ),
+        "about half of the height, the price of a flat fill.",
+    ),
+    "8.3": Exercise(
+        _open_rings,
+        _lid,
+        different_pixels,
+        "pixels",
+        0.0,
+        "a mask like the ones given",
+        (
+            (
+                lambda b, i: convex_hull_image(b) & ~b,
+                "The brain's place is in it: take the hull of the inner edge away too.",
+            ),
+            (
+                lambda b, i: convex_hull_image(b) & ~convex_hull_image(i),
+                "Bone is still in it: a prosthesis cannot be where the bone is.",
+            ),
+            (
+                lambda b, i: convex_hull_image(b) & ~i & ~b,
+                "Only the inner edge was taken away; what it encloses is its hull.",
+            ),
+            (lambda b, i: convex_hull_image(i) & ~b, "This is the inside of the head."),
+        ),
+        (
+            "One hull for the outside, one for the inside.",
+            "convex_hull_image(inner) is the inside of the head.",
+            "convex_hull_image(bone) & ~convex_hull_image(inner) & ~bone",
+        ),
+        "a lid where the paper's rule would give nothing.",
+    ),
+}
+"""Lesson 08."""

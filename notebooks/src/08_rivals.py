@@ -1,0 +1,328 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 08 Rivals: a rubber sheet, a mirror, a flat fill
+#
+# A method is only as good as it is better than something simpler. Three rivals close the same hole here: the convex
+# hull, the mirrored other side, and a fill between guiding points on a mesh. Each fails in its own way, and each way can
+# be told beforehand, with a pencil.
+#
+# **After this lesson you can**
+# - say for which holes a convex hull will do, from the diameter alone;
+# - read a symmetry plane (angle, offset, residual) and tell what an asymmetric head costs a mirror;
+# - explain the planar bias of a least-area fill, and predict its size;
+# - compare four methods in one fair table.
+#
+# **Time:** 50 minutes (text 20, questions 10, exercises 20). **You need:** lessons 05 and 07.
+#
+# **From the paper:** section 3, the columns "You et al." and "reflection" of Table 3; Figure 6.
+
+# %%
+import numpy as np
+from skimage.morphology import convex_hull_image
+
+from cranio_nb import check, classroom, evaluate, lesion, segment, symmetry, tables, widgets
+from cranio_nb import truth as measure
+from cranio_nb.methods import hull, reflection, slicewise, you
+
+# %% [markdown]
+# ## Parameters
+#
+# | method | name | meaning | unit | here |
+# |---|---|---|---|---|
+# | hull | `axial` | slice by slice, as the paper; else in space | | no |
+# | reflection | `fit_rim` | bend the mirror image to meet the rim | | yes |
+# | reflection | `partial` | copy what can be copied, leave the rest open | | no |
+# | You et al. | `n_guides` | guiding points around the hole | 1 | 12 |
+#
+# *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, as in lesson 07. The
+# numbers in the answers are those of `"class"`.
+
+# %%
+case = classroom.load("class", needs_truth=True)
+bone, px = segment.segment(case.ct), case.px
+openings = lesion.find(bone)
+true = measure.true_prosthesis(case.truth, bone, openings[0])
+
+# %% [markdown]
+# ## 1. The hull: a rubber sheet
+#
+# Stretch a sheet over the hole: it touches the rim and is straight between. The paper does so where only part of the
+# thickness is lost (lesson 05). For a hole right through the bone we take two hulls, of the outer and of the inner surface.
+#
+# A straight line across a hole of diameter D in a sphere of radius R lies R - sqrt(R^2 - D^2 / 4) too deep.
+#
+# **Predict:** from which diameter on is the hull more than 3 mm too deep, if R = 75 mm?
+
+# %% tags=["nbval-check-output"]
+diameters = np.linspace(0, 100, 51)
+depths = {f"R = {r} mm": r - np.sqrt(r**2 - diameters**2 / 4) for r in (65, 75, 85)}
+fig, (ax,) = classroom.axes(height=3.0)
+classroom.plot_lines(ax, diameters, depths, xlabel="hole (mm)", ylabel="too deep (mm)")
+alt = "Three curves, depth of a flat lid against the hole's diameter: they rise ever more steeply."
+at_40, at_95 = (75 - np.sqrt(75**2 - d**2 / 4) for d in (40, 95))
+classroom.picture(
+    fig, alt, f"R = 75 mm: {at_40:.1f} mm for a hole of 40 mm, {at_95:.1f} for 95"
+)
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# From about 42 mm on. The depth grows with the *square* of the diameter (D^2 / (8 R) for small holes). So the same hull
+# that is useless here is fine for a burr hole:
+#
+# </details>
+
+# %% tags=["nbval-check-output"]
+sheet = hull.design(bone, openings)
+burr = classroom.load("class", defect="burr_hole", needs_truth=True)
+small = hull.design(segment.segment(burr.ct))
+print(f"this hole: Dice {evaluate.dice(sheet.patch, case.truth):.3f}")
+print(f"burr hole: Dice {evaluate.dice(small.patch, burr.truth):.3f}")
+
+# %% [markdown]
+# ## 2. The mirror
+#
+# The plane that maps the skull onto itself is found from the outer surface: two angles and an offset, such that the
+# mirrored points lie on the surface again. The **residual** is how far they still lie off; no plane can do better, so it
+# says how asymmetric this head is.
+
+# %% tags=["nbval-check-output"]
+plane = symmetry.find(bone, openings[0].head_centre)
+print(
+    f"{np.degrees(plane.angle):.1f} degrees from the scan's mid-plane, {plane.offset:.1f} mm aside"
+)
+print(f"residual {plane.residual:.2f} mm (median)")
+
+# %% [markdown]
+# **Predict, then move, then explain.** You set the plane by hand and are off: by 3 degrees of *turn* (about the upright
+# axis), by 3 degrees of *lean* (to a side), or by 1 mm of *shift*. Which one costs most?
+#
+# Controls: `turn`, `lean` and `shift`, e.g. `mirror.set(turn=3)`.
+
+# %% tags=["nbval-check-output"]
+mirror = widgets.symmetry_plane(bone, openings[0])
+mirror
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# The median residual rises from 0.17 mm to 1.26 mm for the shift, to 1.13 mm for the turn and to 0.43 mm for the lean.
+# A plane that is off by 1 mm puts the image off by 2 mm: a mirror doubles its errors. Turning a
+# ball costs nothing; seen from above the head is an oval, from the front its vault is rounder, so a turn costs more than a
+# lean. At the hole itself nothing can tell you: it is white in the map.
+#
+# </details>
+#
+# No head is like its mirror image. Let us make ours lopsided: the sound half 4 % wider. The hole, and the truth in it,
+# stay what they were. (The patient's right is at the small column numbers.)
+
+# %% tags=["nbval-check-output"]
+cols = np.arange(bone.shape[2])
+middle = bone.to_voxel(plane.point)[2]
+source = np.where(cols < middle, middle + (cols - middle) / 1.04, cols)
+lopsided = bone.with_voxels(bone.voxels[:, :, np.rint(source).astype(int)])
+copies = {}
+for name, skull in {"our head": bone, "lopsided": lopsided}.items():
+    for fit in (False, True):
+        made = copies[name, fit] = reflection.design(skull, openings, fit_rim=fit)
+        dice = evaluate.dice(made.patch, case.truth)
+        print(f"{name}, fit_rim {fit!s:5}: Dice {dice:.3f}")
+
+# %% tags=["nbval-check-output"]
+for name in ("our head", "lopsided"):
+    found = copies[name, True].record["symmetry"]
+    print(f"{name}: offset {found['offset_mm']:.2f} mm, residual {found['residual_mm']:.2f} mm")
+
+# %% [markdown]
+# **Question.** Why does bending the image to the rim help one head and not the other? And why does the residual not give
+# the lopsided head away?
+#
+# <details>
+# <summary>Answer</summary>
+#
+# The phantom is nearly symmetric: its mirror image is right already, and the fit adds what little is ragged at the rim. On
+# the lopsided head the image stands beside the bone, and the rim knows by how much. Real heads are of the second kind.
+#
+# The residual is small as the plane has moved over, into the middle of the wider head. What is left shows only where the
+# shape differs, not the width. A small residual is necessary for a good mirror, not sufficient.
+#
+# </details>
+#
+# ## 3. You et al.: guiding points and a flat fill
+#
+# This rival works on triangles. Each cell of voxels is split into six **tetrahedra**; a tetrahedron has four corners, so
+# the surface crosses it in nothing, a triangle or a four-sided piece, and no case is ambiguous (marching cubes have some).
+# Then a user picks **guiding points** on the rim, and what lies between them is closed by the surface of least area, like
+# soap film. The original is not available to us in full; this is made in its spirit, and finds the points by itself.
+#
+# **Predict, then move, then explain.** You may place more guiding points. How much closer to the truth does the fill come
+# with 24 than with 12? And how few are enough?
+#
+# Control: `n`, e.g. `film.set(n=4)`.
+
+# %% tags=["nbval-check-output"]
+film = widgets.guiding_points(bone, openings[0], true)
+film
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# By next to nothing: 2.53 mm on average with 24 points, 2.54 mm with 12, 2.61 mm with 3. With 4 it happens to be 2.78 mm
+# (7.8 mm at most), as the shortest way between two points leaves the rim somewhere. The points only say where the rim is. What
+# is wrong is not the rim but what is *not asked*: that the fill leaves the rim in the direction of the bone.
+#
+# </details>
+#
+# A soap film over a round hole is flat, and a flat lid under a cap of height h lies h too deep at most and about h / 2 on
+# average (exercise 8.2). That is the **planar bias**. Here:
+
+# %% tags=["nbval-check-output"]
+print(f"h is about {film.view.line.split(', ')[-1]}")
+row = tables.PAPER_DISTANCES["You et al."]
+print(f"the paper's You: mean {row.mean} voxels, max {row.max}: ratio {row.mean / row.max:.2f}")
+flat = you.design(bone, openings)
+row = measure.table3(flat, true, bone)["outer"]
+print(
+    f"here:            mean {row.mean:.2f} voxels, max {row.max:.2f}: ratio {row.mean / row.max:.2f}"
+)
+
+# %% [markdown]
+# The paper's You column has just this ratio. So its largest distance of 6.06 voxels may well be the height of the cap
+# that was missing, and the mean is what geometry makes of it.
+#
+# ## 4. Side by side
+#
+# The paper's Table 3 has distances in voxels, as below. Its truth is the reflection; ours is the true bone, so the
+# reflection itself can be a row.
+
+# %% tags=["nbval-check-output"]
+rivals = {"hull": sheet, "You et al.": flat, "reflection": copies["our head", False]}
+rivals["slice method"] = slicewise.design(bone, openings)
+print("                outer mean   max   inner mean   max    Dice  HD95 (mm)")
+for name, made in rivals.items():
+    seen = measure.against(made, true, bone)
+    out, inn = seen.table3["outer"], seen.table3["inner"]
+    print(f"{name:14} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
+    print(f" {seen.score.dice:7.3f} {seen.score.hd95:6.2f}")
+print("paper, You et al.     3.09  6.06")
+print("paper, its method     1.10  2.89         0.72  3.16")
+
+# %% tags=["nbval-check-output"]
+at = sum(openings[0].planes) // 2
+fig, axes = classroom.axes(4, height=4.4)
+lost = case.truth.voxels[at]
+for ax, (name, made) in zip(axes, rivals.items(), strict=True):
+    patch = made.patch.voxels[at]
+    classroom.show_mask(ax, bone.voxels[at], px=px)
+    classroom.show_mask(ax, lost & ~patch, px=px, colour="#D55E00")
+    classroom.show_mask(ax, patch & ~lost, px=px, colour="#0072B2")
+    classroom.show_mask(ax, patch & lost, px=px, colour="#56B4E9", title=name)
+    classroom.zoom(ax, [np.argwhere(lost)], px=px, margin=8)
+alt = "One slice, four methods: agreed light blue, missed bone orange, too much dark blue."
+classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
+
+# %% [markdown]
+# **Question.** Hull and flat fill are both straight between the rims. Why is the hull a little better?
+#
+# <details>
+# <summary>Answer</summary>
+#
+# A surface of least area never leaves the convex hull of its rim, so the film lies under the sheet everywhere. The rim of
+# this hole is not plane: the sheet goes over its highest places, the film sags between them.
+#
+# </details>
+#
+# ## A mistake to make once
+#
+# Ask the mirror for a hole that crosses the middle. What should be copied is missing, too:
+
+# %% tags=["raises-exception"]
+frontal = segment.segment(classroom.load("tiny", defect="frontal").ct)
+reflection.design(frontal)
+
+# %% [markdown]
+# ## Exercises
+#
+# **Exercise 8.1.** The symmetry plane from pairs. `a` and `b` (n, 3) are points and their partners on the other side of
+# the head. Return the plane's unit normal and a point on it. (Lesson 07 mirrored at a plane; this is the way back.)
+
+
+# %% tags=["solution"]
+def plane_of_pairs(a, b):
+    """Unit normal, shape (3,), and a point, shape (3,), of the plane that maps a onto b."""
+    across = (a - b).sum(axis=0)
+    return across / np.linalg.norm(across), (a + b).mean(axis=0) / 2
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("8.1", plane_of_pairs)
+
+# %% [markdown]
+# **Exercise 8.2.** The planar bias. A hole of radius `a` under a spherical cap of height `h` (both mm) is closed by a flat
+# lid. Return the mean depth of the lid under the cap, over the area of the hole. The cap's volume is
+# pi h (3 a^2 + h^2) / 6.
+
+
+# %% tags=["solution"]
+def mean_depth(a, h):
+    """Mean distance of a flat lid from the cap above it, along the lid's normal, mm."""
+    return h * (3 * a**2 + h**2) / (6 * a**2)
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("8.2", mean_depth)
+
+# %% tags=["expected"]
+fig, (ax,) = classroom.axes(height=3.0)
+heights = np.linspace(0.5, 20, 40)
+lines = {"mean depth, a = 35 mm": [mean_depth(35, h) for h in heights], "h / 2": heights / 2}
+classroom.plot_lines(ax, heights, lines, xlabel="height of the cap (mm)", ylabel="mm")
+alt = (
+    "Mean depth against the height of the cap: nearly the straight line h / 2, a little above."
+)
+classroom.picture(fig, alt, f"a = 35 mm, h = 6 mm: {mean_depth(35, 6):.2f} mm")
+
+# %% [markdown]
+# **Exercise 8.3.** A lid for an open ring. Lesson 05 dropped the brain's place as the biggest region; where the ring is
+# open, the lid hangs together with it. `bone` is the bone of a slice, `inner` the pixels along its inner edge (both
+# masks). Return the hull of the bone, without the hull of the inner edge, without the bone. (`convex_hull_image` is
+# imported.)
+
+
+# %% tags=["solution"]
+def lid(bone, inner):
+    """Mask of what lies between the two hulls and is not bone."""
+    return convex_hull_image(bone) & ~convex_hull_image(inner) & ~bone
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("8.3", lid)
+
+# %% [markdown]
+# ## Summary
+#
+# - A hull is for small holes: its error grows with the square of the diameter.
+# - A mirror doubles the error of its plane, cannot do better than the head is symmetric, and has nothing to copy across the
+#   middle.
+# - A least-area fill knows where the rim is but not where the bone was going: mean error about half the cap's height.
+#
+# | paper | code | unit |
+# |---|---|---|
+# | convex hull, Fig. 6 | `hull.design`, `hull.paper_options` | |
+# | reflection | `symmetry.find`, `reflection.design` | degrees, mm |
+# | You et al. | `tetrahedra.extract`, `you.design` | mm |
+# | Table 3 | `truth.table3`, `tables.PAPER_DISTANCES` | voxels |
+#
+# **Further reading.** Chen and Medioni, *Object modelling by registration of multiple range images*, Image and Vision
+# Computing 10 (1992), the way the plane is found. Pinkall and Polthier, *Computing discrete minimal surfaces and their
+# conjugates*, Experimental Mathematics 2 (1993), for soap films in triangles.
