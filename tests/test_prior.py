@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from cranio_nb import chart as radial
 from cranio_nb import casting, headframe, prior, prior_study, vaultmap
+from cranio_nb import chart as radial
 from cranio_nb.cli import main
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.export import write_nifti
