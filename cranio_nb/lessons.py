@@ -36,13 +36,14 @@ _TO_STUDENTS = (
     "*This is the copy to work in. Run the cells from the top. Where you meet `raise NotImplementedError`, put your "
     "own lines in its place, then run the check below it. Solutions and expected pictures are folded away: try first.*"
 )
-_SET_UP = """# On Colab this installs the package; elsewhere it does nothing.
-# SOURCE is what pip can take: the package's name, a wheel that you uploaded, or "git+" and the project's address.
+_SET_UP = """# On Colab this installs the package; elsewhere it does nothing. SOURCE is what pip can take:
+# the package's name, a wheel that you uploaded, or "git+" and the project's address.
 SOURCE = "cranio-nb"
 import subprocess, sys
 
 if "google.colab" in sys.modules:
-    subprocess.run([sys.executable, "-m", "pip", "install", "-q", f"{SOURCE}[view]", "ipywidgets"], check=True)"""
+    command = [sys.executable, "-m", "pip", "install", "-q", f"{SOURCE}[view]", "ipywidgets"]
+    subprocess.run(command, check=True)"""
 _TIMEOUT = 300  # s for one cell
 _NUMBER = re.compile(r"check\.exercise\(\"(\d+\.\d+)\"")
 _POINTS = re.compile(r"Exercise ([\d.]+): (\d+) of (\d+) points")

@@ -42,7 +42,7 @@ Array = NDArray[np.float64]
 
 _NODES = 2.0  # mm between the nodes of the plate
 _REACH = 25.0  # mm of bone beside the hole that the plate lies on
-_ROUNDS = 4  # of weighting
+_HOLDS = (0.05, 0.2, 1.0, 1.0)  # how firmly the data hold in each round of weighting
 _LEAST_SPREAD = 0.05  # mm: residuals below this are no outliers
 _FAINT = 1e-10  # weight that holds the plate to the mean radius where bone holds it nowhere
 _LEAST_NODES = 12
@@ -176,10 +176,10 @@ def bend(
 def _settle(stiffness: sparse.csr_array, push: Array, data: Array, known: NDArray[np.bool_]) -> Array:
     """The minimum of the energy, with weights that fall with the residuals they leave."""
     weight = known.astype(float)
-    for _ in range(_ROUNDS):
-        held = (stiffness + sparse.diags_array(weight + _FAINT)).tocsc()
+    for hold in _HOLDS:  # first a stiff plate, which no stray bone can bend
+        held = (stiffness + sparse.diags_array(hold * weight + _FAINT)).tocsc()
         factors = splu(held, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        g = factors.solve(weight * data + push)
+        g = factors.solve(hold * weight * data + push)
         residual = np.abs(g - data)
         spread = max(1.4826 * float(np.median(residual[known])), _LEAST_SPREAD)
         weight = known / (1 + (residual / (3 * spread)) ** 2)

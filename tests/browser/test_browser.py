@@ -103,11 +103,15 @@ def test_sliders_move_pictures_the_balloon_plays_and_the_scene_is_there(open_not
     before = shot(frame)
     place = frame.bounding_box()
     x, y = place["x"] + place["width"] / 2, place["y"] + place["height"] / 2
-    page.mouse.move(x, y)
-    page.mouse.down()
-    page.mouse.move(x + 120, y + 20, steps=6)
-    page.mouse.up()
-    assert until(lambda: (np.abs(shot(frame) - before).max(axis=2) > 20).mean() > 0.02), "the scene does not turn"
+
+    def turned():
+        page.mouse.move(x, y)
+        page.mouse.down()
+        page.mouse.move(x + 120, y + 20, steps=6)
+        page.mouse.up()
+        return until(lambda: (np.abs(shot(frame) - before).max(axis=2) > 20).mean() > 0.02)
+
+    assert any(turned() for _ in range(3)), "the scene does not turn"  # one that still loads may miss a drag
     assert no_errors(page) == []
 
 
