@@ -41,8 +41,8 @@ from ..volume import Volume
 Array = NDArray[np.float64]
 
 _NODES = 2.0  # mm between the nodes of the plate
-_REACH = 35.0  # mm of bone beside the hole that the plate lies on
-_ROUNDS = 4  # of weighting
+_REACH = 25.0  # mm of bone beside the hole that the plate lies on
+_HOLDS = (0.01, 0.1, 1.0, 1.0)  # how firmly the data hold in each round of weighting
 _LEAST_SPREAD = 0.05  # mm: residuals below this are no outliers
 _FAINT = 1e-10  # weight that holds the plate to the mean radius where bone holds it nowhere
 _LEAST_NODES = 12
@@ -72,9 +72,9 @@ def design(
     bone: Volume,
     lesions: Sequence[Lesion] | None = None,
     *,
-    second: float = 1.7,
-    third: float = 2.4,
-    mirror: float = 2.2,
+    second: float = 1.3,
+    third: float = 1.8,
+    mirror: float = 1.6,
     smooth: bool = True,
     progress: Callable[[str, float], None] | None = None,
 ) -> Prosthesis:
@@ -133,9 +133,9 @@ def bend(
     mm: float,
     *,
     like: Array | None = None,
-    second: float = 1.7,
-    third: float = 2.4,
-    likeness: float = 2.2,
+    second: float = 1.3,
+    third: float = 1.8,
+    likeness: float = 1.6,
 ) -> Array:
     """Continue a map across a hole with the least bending.
 
@@ -155,7 +155,7 @@ def bend(
     Returns
     -------
     ndarray, shape (M, N)
-        The plate in the hole and up to 35 mm around it; nan elsewhere, and everywhere if nothing is known.
+        The plate in the hole and up to 25 mm around it; nan elsewhere, and everywhere if nothing is known.
     """
     beside = ndimage.distance_transform_edt(~hole) * mm <= _REACH
     out = np.full(values.shape, np.nan)
@@ -176,10 +176,10 @@ def bend(
 def _settle(stiffness: sparse.csr_array, push: Array, data: Array, known: NDArray[np.bool_]) -> Array:
     """The minimum of the energy, with weights that fall with the residuals they leave."""
     weight = known.astype(float)
-    for _ in range(_ROUNDS):
-        held = (stiffness + sparse.diags_array(weight + _FAINT)).tocsc()
+    for hold in _HOLDS:  # first a stiff plate, which no stray bone can bend
+        held = (stiffness + sparse.diags_array(hold * weight + _FAINT)).tocsc()
         factors = splu(held, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        g = factors.solve(weight * data + push)
+        g = factors.solve(hold * weight * data + push)
         residual = np.abs(g - data)
         spread = max(1.4826 * float(np.median(residual[known])), _LEAST_SPREAD)
         weight = known / (1 + (residual / (3 * spread)) ** 2)
