@@ -99,7 +99,7 @@ def design(
     partial : bool
         Where the other side lacks bone too, leave that part (or that whole lesion) open instead of refusing.
     fit_rim : bool
-        Bend the mirrored surfaces smoothly to meet the bone around the hole.
+        Bend the mirrored surfaces smoothly to meet the bone around the hole, nowhere thinner than sound bone near it.
     smooth : bool
         Surface without stairs (see `surface.extract`).
     progress : callable, optional
@@ -178,6 +178,7 @@ def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) ->
         finest = max(_SMOOTH, 2 * float(bone.spacing.max()))
         outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
         inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
+        outer, inner = chart.thickened(own, outer, inner)
     made = MirroredDesign(one, plane, own, image, outer, inner)
     keep = own.hole
     if made.lost > _TOLERATED:
