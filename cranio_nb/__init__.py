@@ -12,9 +12,10 @@ Stages    `readers` scan -> CT; `segment` CT -> bone; `lesion` bone -> openings;
           truth -> measures; `fit` and `implant` prosthesis -> what a workshop asks; `export` -> files
 Vault     `chart` the vault as radius maps; `rays` gap ends for real skulls; `slicing` planes to cut along
           (sees the other two)
-Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share
-Methods   `methods.slicewise` the paper; every method is `design(bone, lesions, *, options) -> Prosthesis`, and
-          `catalogue` knows them by name
+Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share; `tetrahedra` mask -> mesh,
+          `solid` mesh -> voxels, `membrane` rim -> flat fill; `sheet` and `sheet_motion` elastic surfaces
+Methods   `methods.slicewise` the paper, `methods.you` and `methods.dnurbs` its rivals; every method is
+          `design(bone, lesions, *, options) -> Prosthesis`, and `catalogue` knows them by name
 Outside   `run` the pipeline as one call; `tables`, `render`, `plot`, `report`, `outputs`, `console`, `doctor`,
           `cli`. Only `plot` imports matplotlib
 ========  ====================================================================================================
