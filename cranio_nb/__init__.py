@@ -10,13 +10,14 @@ Nouns     `volume` voxels and where they stand; `curves` plane curves, gap ends,
 Stages    `readers` scan -> CT; `segment` CT -> bone; `lesion` bone -> openings; `features` slice -> gap ends;
           `balloon` gap ends -> curves; `fill` curves -> patch; `surface` patch -> mesh; `evaluate` patch and
           truth -> measures; `fit` and `implant` prosthesis -> what a workshop asks; `export` -> files
-Vault     `chart` the vault as radius maps; `rays` gap ends for real skulls; `slicing` planes to cut along
-          (sees the other two)
+Vault     `casting` rays from inside the head; `chart` the vault as radius maps; `symmetry` its symmetry plane; `rays`
+          gap ends for real skulls; `slicing` planes to cut along
 Learned   `headframe` lays a skull on the mean head; `vaultmap` radius maps on it, and `prior` what those of
-          intact skulls tell about the bone in a hole (both see `chart`); `prior_file` keeps it
-Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share
-Methods   `methods.slicewise` the paper; every method is `design(bone, lesions, *, options) -> Prosthesis`, and
-          `catalogue` knows them by name
+          intact skulls tell about the bone in a hole (both see the vault); `prior_file` keeps it
+Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share; `tetrahedra` mask -> mesh,
+          `solid` mesh -> voxels, `membrane` rim -> flat fill; `sheet` and `sheet_motion` elastic surfaces
+Methods   `methods.slicewise` the paper; `hull`, `reflection`, `you`, `thin_plate`, `dnurbs` its rivals; every method
+          is `design(bone, lesions, *, options) -> Prosthesis`, and `catalogue` knows them by name
 Outside   `run` the pipeline as one call; `trial` a method in a process of its own; `truth`, `compare` methods against
           the missing bone and each other; `tables`, `render`, `plot`, `report`, `compare_page`, `outputs`, `console`,
           `doctor`, `prior_study`, `cli`. Only `plot` imports matplotlib

@@ -184,17 +184,17 @@ def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
 def derivatives(sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64]) -> dict[Pair, NDArray[np.float64]]:
     """The surface and its derivatives up to the second at parameters (k,), shape (k, 3) each."""
     points = sheet.control.reshape(-1, 3) * sheet.weights.reshape(-1, 1)
-    return {d: part @ points for d, part in _quotients(sheet, v, u).items()}
+    return {d: part @ points for d, part in _quotients(sheet, v, u, tuple(_SHARES)).items()}
 
 
 def jacobians(
-    sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64], free_weights: bool
+    sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64], free_weights: bool, *, strains: bool = True
 ) -> dict[Pair, sparse.csr_array]:
-    """J and its derivatives: of (x, y, z) one below the other by q, shape (3 k, 3 n m), or (3 k, 4 n m) with weights.
+    """J and, if `strains`, its derivatives: of (x, y, z) one below the other by q, shape (3 k, q).
 
-    The coordinates q are all x of the control points, all y, all z, then all weights.
+    The coordinates q are all x of the control points, all y, all z, then all weights if those are free.
     """
-    quotients = _quotients(sheet, v, u)
+    quotients = _quotients(sheet, v, u, tuple(_SHARES) if strains else (VALUE,))
     weights, points = sheet.weights.ravel(), sheet.control.reshape(-1, 3)
     shape = {d: part @ (points * weights[:, None]) for d, part in quotients.items()}
     found = {}
@@ -228,15 +228,15 @@ _SHARES: dict[Pair, dict[Pair, int]] = {
 """Leibniz: a derivative of a product sums these derivatives of one factor, so often, with the rest of the other."""
 
 
-def _quotients(sheet: Sheet, v: NDArray, u: NDArray) -> dict[Pair, sparse.csr_array]:
+def _quotients(sheet: Sheet, v: NDArray, u: NDArray, kinds: tuple[Pair, ...]) -> dict[Pair, sparse.csr_array]:
     """Q_i = B_i / W with W = sum w B, and its derivatives, shape (k, n m): from the product rule for B = Q W."""
     weights = sheet.weights.ravel()
     found: dict[Pair, sparse.csr_array] = {}
-    products = {d: tensor(v, u, sheet.spans, d) for d in _SHARES}
+    products = {d: tensor(v, u, sheet.spans, d) for d in kinds}
     below = {d: part @ weights for d, part in products.items()}
-    for d, shares in _SHARES.items():
+    for d in kinds:
         total = products[d]
-        for (i, j), times in shares.items():
+        for (i, j), times in _SHARES[d].items():
             if (i, j) != VALUE:
                 total = total - times * sparse.diags_array(below[i, j]) @ found[d[0] - i, d[1] - j]
         found[d] = sparse.csr_array(sparse.diags_array(1 / below[VALUE]) @ total)
@@ -246,12 +246,12 @@ def _quotients(sheet: Sheet, v: NDArray, u: NDArray) -> dict[Pair, sparse.csr_ar
 def _forces(
     sheet: Sheet, setting: Setting, dynamics: Dynamics
 ) -> tuple[sparse.csr_array, sparse.csr_array, NDArray[np.float64]]:
-    """Int J^T J; the stiffness of the sheet and the springs; and the force of both at the sheet's place."""
+    """Integral of J^T J; the stiffness of the sheet and the springs; and the force of both at the sheet's place."""
     free, springs = dynamics.free_weights, setting.springs
     v, u, weight = _quadrature(sheet)
     parts = jacobians(sheet, v, u, free)
     shape, natural = derivatives(sheet, v, u), derivatives(setting.natural, v, u)
-    pull = jacobians(sheet, springs.v, springs.u, free)[VALUE]
+    pull = jacobians(sheet, springs.v, springs.u, free, strains=False)[VALUE]
     strength = np.tile(springs.strength, 3)
     elastic = pull.T @ sparse.diags_array(strength) @ pull
     force = pull.T @ (strength * (springs.points - sheet.at(springs.v, springs.u)).T.ravel())

@@ -74,7 +74,9 @@ def test_a_mesh_beyond_the_grid_fills_what_of_it_is_on_the_grid():
     mask = Volume(np.ones((9, 9, 9), bool), np.eye(4))
     small = mask.crop(np.s_[2:5, 3:6, 4:9])
     assert solid.inside(tetrahedra.extract(mask), small).all()
-    away = Volume(small.voxels, small.affine + np.eye(4)[:, [1, 2, 3, 0]] * 0 + np.eye(4, k=3) * 40)
+    there = small.affine.copy()
+    there[0, 3] += 40
+    away = Volume(small.voxels, there)
     assert not solid.inside(tetrahedra.extract(mask), away).any()
 
 

@@ -58,7 +58,7 @@ class Filling:
     outer, inner : Membrane
         The fills.
     solid : Mesh
-        Both fills and the wall between them, closed.
+        Both fills and the wall between them, closed. On a ragged rim faces of the wall may cross a fill.
     """
 
     skull: Mesh
