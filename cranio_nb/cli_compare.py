@@ -12,7 +12,7 @@ from .errors import InputRefused, NoOpening
 from .readers import ALLOWANCES
 
 if TYPE_CHECKING:
-    from .compare import Comparison
+    from .compare import Comparison, Measure
 
 _PATH = click.Path(path_type=Path)
 
@@ -83,13 +83,14 @@ def _print(found: Comparison, out: Path | None) -> None:
     from .compare_page import tables
     from .console import print_table
 
-    done = [(t.contender.name, row) for t, row in zip(found.trials, found.rows, strict=True) if t.status == "done"]
     for part in tables(found):
+        columns = {key: MEASURES[key] for key in part["keys"]}
         rows = [
-            [MEASURES[key].label, *(_shown(row[key], MEASURES[key].digits) for _, row in done), MEASURES[key].unit]
-            for key in part["keys"]
+            [trial.contender.name, *(_shown(row[key], what.digits) for key, what in columns.items())]
+            for trial, row in zip(found.trials, found.rows, strict=True)
         ]
-        print_table(part["title"], ("Measure", *(name for name, _ in done), "Unit"), rows)
+        print_table(part["title"], ("", *(what.short for what in columns.values())), rows)
+        click.echo(click.wrap_text("; ".join(filter(None, map(_meaning, columns.values()))), 78, "  ", "  ") + "\n")
     for trial in found.trials:
         if trial.status != "done":
             click.echo(f"{trial.contender.name}: {trial.status}: {trial.message}")
@@ -99,3 +100,11 @@ def _print(found: Comparison, out: Path | None) -> None:
 
 def _shown(value: float, digits: int) -> str:
     return "-" if value != value else f"{value:.{digits}f}"
+
+
+def _meaning(what: Measure) -> str:
+    """What a short head stands for; empty where it says all."""
+    unit = f" ({what.unit})" if what.unit else ""
+    if what.short == what.label:
+        return what.short + unit if unit else ""
+    return f"{what.short}: {what.label}{unit}"

@@ -30,8 +30,8 @@ class Measure:
 
     Parameters
     ----------
-    label, unit : str
-        Words of its head.
+    label, short, unit : str
+        Words of its head, on a page and where there is little room.
     digits : int
         Decimals shown.
     best : {"high", "low", ""}
@@ -41,6 +41,7 @@ class Measure:
     """
 
     label: str
+    short: str
     unit: str
     digits: int
     best: str = ""
@@ -48,22 +49,22 @@ class Measure:
 
 
 MEASURES = {
-    "dice": Measure("DSC", "", 3, "high", True),
-    "border_dice": Measure("Border DSC", "", 3, "high", True),
-    "hd95": Measure("HD95", "mm", 2, "low", True),
-    "assd": Measure("ASSD", "mm", 2, "low", True),
-    "thickness_rmse": Measure("Thickness RMSE", "mm", 2, "low", True),
-    "top_mean": Measure("Table 3, top: mean", "voxels", 2, "low", True),
-    "inner_mean": Measure("Table 3, inner: mean", "voxels", 2, "low", True),
-    "volume_ratio": Measure("Volume ratio", "", 3, "", True),
-    "volume": Measure("Volume", "cm³", 2),
-    "thickness": Measure("Thickness", "mm", 2),
-    "rim_gap": Measure("Rim gap: mean", "mm", 2, "low"),
-    "rim_gap_p95": Measure("Rim gap: 95 %", "mm", 2, "low"),
-    "overlap": Measure("Overlap with bone", "voxels", 0, "low"),
-    "seconds": Measure("Time", "s", 1, "low"),
-    "cpu": Measure("CPU time", "s", 1, "low"),
-    "memory": Measure("Peak memory", "MB", 0, "low"),
+    "dice": Measure("DSC", "DSC", "", 3, "high", True),
+    "border_dice": Measure("Border DSC", "bDSC", "", 3, "high", True),
+    "hd95": Measure("HD95", "HD95", "mm", 2, "low", True),
+    "assd": Measure("ASSD", "ASSD", "mm", 2, "low", True),
+    "thickness_rmse": Measure("Thickness RMSE", "tRMSE", "mm", 2, "low", True),
+    "top_mean": Measure("Table 3, top: mean", "top", "voxels", 2, "low", True),
+    "inner_mean": Measure("Table 3, inner: mean", "inner", "voxels", 2, "low", True),
+    "volume_ratio": Measure("Volume ratio", "ratio", "", 3, "", True),
+    "volume": Measure("Volume", "cm³", "cm³", 2),
+    "thickness": Measure("Thickness", "thick", "mm", 2),
+    "rim_gap": Measure("Rim gap: mean", "gap", "mm", 2, "low"),
+    "rim_gap_p95": Measure("Rim gap: 95 %", "gap95", "mm", 2, "low"),
+    "overlap": Measure("Overlap with bone", "over", "voxels", 0, "low"),
+    "seconds": Measure("Time", "time", "s", 1, "low"),
+    "cpu": Measure("CPU time", "CPU", "s", 1, "low"),
+    "memory": Measure("Peak memory", "MB", "MB", 0, "low"),
 }
 """Every column by its name in files: accuracy against a truth, the implant itself, its cost (`Trial`)."""
 

@@ -186,5 +186,5 @@ def _against(comparison: Comparison) -> str:
 
 def _lines(n: int) -> list[tuple[str, str]]:
     """Colour and SVG dashes of the outlines in the order they are drawn."""
-    lines = [plot.LINES[i % len(plot.LINES)] for i in range(n)]
-    return [(colour, " ".join(f"{2.5 * d:g}" for d in dashes)) for colour, dashes in lines]
+    styles = map(plot.line_style, range(n))
+    return [(colour, " ".join(f"{2.5 * d:g}" for d in dashes)) for colour, dashes in styles]

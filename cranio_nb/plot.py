@@ -40,16 +40,16 @@ SIDES = {
 }
 """Directions from the head to the viewer, LPS."""
 
-LINES = (
-    (BLUE, ()),
-    (VERMILLION, (6.0, 2.0)),
-    (GREEN, (6.0, 1.5, 1.5, 1.5)),
-    (PURPLE, (2.0, 1.2)),
-    (BLACK, (1.0, 1.5)),
-    (ORANGE, (9.0, 1.5)),
-    (GREY, (3.0, 1.0, 1.0, 1.0, 1.0, 1.0)),
+_LINE_COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, BLACK, ORANGE, GREY)
+_DASHES: tuple[tuple[float, ...], ...] = (
+    (),
+    (6.0, 2.0),
+    (6.0, 1.5, 1.5, 1.5),
+    (2.0, 1.2),
+    (1.0, 1.5),
+    (9.0, 1.5),
+    (3.0, 1.0, 1.0, 1.0, 1.0, 1.0),
 )
-"""Colour and dashes (on, off, ... in line widths) of things drawn over each other, told apart by either."""
 
 _LETTERS = (("R", "L"), ("A", "P"), ("I", "S"))  # negative and positive end of each world axis
 _RIM = 14  # px left free around a view
@@ -134,17 +134,26 @@ def slice_figure(
     return figure
 
 
+def line_style(i: int) -> tuple[str, tuple[float, ...]]:
+    """Colour and dashes (on, off, ... in line widths) of the i-th of several lines drawn over each other.
+
+    Alone the dashes tell seven apart; with the colours it is 49 before one comes back.
+    """
+    n = len(_DASHES)
+    return _LINE_COLOURS[i % n], _DASHES[(i + i // n) % n]
+
+
 def outlines_figure(
     bone: Volume, truth: Volume | None, patches: Sequence[Volume], centre: ArrayLike, axes: ArrayLike, reach: float
 ) -> Figure:
-    """A cut through several patches for one hole: bone and truth as areas, each patch as a line of `LINES`.
+    """A cut through several patches for one hole: bone and truth as areas, each patch as a line of its `line_style`.
 
     Parameters
     ----------
     bone, truth : Volume
         Bool masks.
     patches : sequence of Volume
-        Bool masks, in the order of `LINES`.
+        Bool masks.
     centre : array_like, shape (3,)
         Middle of the picture, world mm.
     axes : array_like, shape (2, 3)
@@ -161,7 +170,7 @@ def outlines_figure(
         if mask is not None:
             _fill(ax, slicing.picture(mask, frame, rows, cols), extent, colour)
     for i, patch in enumerate(patches):
-        colour, dashes = LINES[i % len(LINES)]
+        colour, dashes = line_style(i)
         soft = ndimage.gaussian_filter(slicing.picture(patch, frame, rows, cols).astype(float), 1.0)
         if soft.max() > 0.5:
             style = (0, dashes) if dashes else "-"

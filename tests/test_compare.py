@@ -264,6 +264,10 @@ class TestPage:
         compare_page.comparison_page(found)
         assert len(seen) == 6 and len(set(seen[:3])) == 1 and len(set(seen[3:])) == 1
 
+    def test_heads_for_little_room_tell_columns_apart(self):
+        heads = [what.short for what in compare.MEASURES.values()]
+        assert len(set(heads)) == len(heads) and max(map(len, heads)) <= 5
+
     def test_best_is_what_is_printed_best(self, found):
         accuracy, implant = compare_page.tables(found)
         assert accuracy["best"]["dice"] == 1 and accuracy["best"]["hd95"] == 0

@@ -201,3 +201,9 @@ def test_view_names_the_patients_sides():
 def test_pictures_leave_no_global_state():
     code = "import sys, cranio_nb.plot, cranio_nb.report; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], timeout=60, check=False).returncode == 0
+
+
+def test_lines_over_each_other_are_told_apart():
+    styles = [plot.line_style(i) for i in range(49)]
+    assert len(set(styles)) == 49
+    assert len({dashes for _, dashes in styles[:7]}) == len({colour for colour, _ in styles[:7]}) == 7
