@@ -245,6 +245,7 @@ WRONG = {
     ],
     "8.1": [
         ("return a[0] - b[0], (a[0] + b[0]) / 2", "length 1"),
+        ("return np.mean(a - b, axis=0), np.mean(a + b, axis=0) / 2", "length 1"),
         ("n = a[0] - b[0]; return n / np.linalg.norm(n), a.mean(axis=0)", "half-way"),
         ("return np.array([1, 0, 0]), (a.mean(axis=0) + b.mean(axis=0)) / 2", "head leans"),
         ("n = b[0] - a[0]; return n / np.linalg.norm(n), np.zeros(3)", "0, 0, 0"),

@@ -7,6 +7,8 @@ from skimage.morphology import convex_hull_image
 
 from .task import Exercise, different_pixels, largest_difference
 
+_LONG = "The normal must have length 1: divide it by its length."
+
 
 def _pairs():
     a = np.array([[60.0, 10.0, 5.0], [45.0, -50.0, 30.0], [30.0, 40.0, 70.0], [71.0, 2.0, -20.0]])
@@ -67,10 +69,8 @@ RIVALS = {
         1e-6,
         "two arrays of 3 numbers: the unit normal and a point",
         (
-            (
-                lambda a, b: ((a - b).sum(axis=0), (a + b).mean(axis=0) / 2),
-                "The normal must have length 1: divide by it.",
-            ),
+            (lambda a, b: ((a - b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
+            (lambda a, b: (a[0] - b[0], (a + b).mean(axis=0) / 2), _LONG),
             (
                 lambda a, b: (a[0] - b[0], (a[0] + b[0]) / 2),
                 "The normal must have length 1: divide by it.",
