@@ -6,12 +6,12 @@ other side of the skull has bone, and D^n all partial derivatives of order n on 
 
     sum w (g - f)^2 + a^4 |D^2 g|^2 + b^6 |D^3 g|^2 + c^4 sum v |D^2 (g - m)|^2 .
 
-The second order pulls smoothed bone towards planes, the third towards quadrics, so that it carries the rim's curvature
-into the hole, but also the rim's bumps; both together err less than either. The last term asks the plate to be curved as the other side is; it knows
-nothing of where the other side lies, so an asymmetric head and a plane that is a little off leave no step at the rim.
-The lengths a, b, c (mm) say over what distance bone is smoothed; across the hole only their ratios matter. The weights
-w and v drop bone that does not belong to the vault, ridges, vessels and sinuses (Cauchy's weights, iterated). Each
-surface is one sparse symmetric system, solved directly.
+The second order pulls smoothed bone towards planes, the third towards quadrics, so that it carries the rim's
+curvature into the hole, but also the rim's bumps; both together err less than either. The last term asks the plate to
+be curved as the other side is; it knows nothing of where the other side lies, so an asymmetric head and a plane that
+is a little off leave no step at the rim. The lengths a, b, c (mm) say over what distance bone is smoothed; across the
+hole only their ratios matter. The weights w and v drop bone that does not belong to the vault, ridges, vessels and
+sinuses (Cauchy's weights, iterated). Each surface is one sparse symmetric system, solved directly.
 
 Source: thin plates in cranioplasty are Carr, Fright and Beatson 1997 (doi 10.1109/42.563663): radial basis functions
 on a depth map, second order, interpolating. Ours are the radial chart, finite differences in place of radial
@@ -213,7 +213,8 @@ def _differences(beside: NDArray[np.bool_], order: int) -> sparse.csr_array:
 
 def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_array:
     """One partial difference, `down` times along the rows' axis and `across` times along the columns'."""
-    stencil = np.outer(*[[(-1) ** j * comb(n, j) for j in range(n + 1)] for n in (down, across)]).astype(float)
+    along_rows, along_cols = ([(-1.0) ** j * comb(n, j) for j in range(n + 1)] for n in (down, across))
+    stencil = np.outer(along_rows, along_cols)
     nodes = np.lib.stride_tricks.sliding_window_view(index, stencil.shape).reshape(-1, stencil.size)
     nodes = nodes[(nodes >= 0).all(axis=1)]
     rows = np.repeat(np.arange(len(nodes)), stencil.size)
@@ -236,7 +237,7 @@ def _plate(bone: Volume, one: Lesion, plane: SymmetryPlane | None, lengths: dict
     mirrored = None
     if plane is not None:
         other = chart.along(vault, plane.mirrored(bone))
-        mirrored = tuple(np.where(other.hole, np.nan, radius) for radius in (other.outer, other.inner))
+        mirrored = np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
     nodes = max(1, round(_NODES / vault.mm))
     hole = _thinned(vault.hole.astype(float), nodes) > 0
     radii = []
