@@ -65,7 +65,7 @@ diameters = np.linspace(0, 100, 51)
 depths = {f"R = {r} mm": r - np.sqrt(r**2 - diameters**2 / 4) for r in (65, 75, 85)}
 fig, (ax,) = classroom.axes(height=3.0)
 classroom.plot_lines(ax, diameters, depths, xlabel="hole (mm)", ylabel="too deep (mm)")
-alt = "Three curves, depth of a flat lid against the hole's diameter: they rise ever more steeply."
+alt = "Three curves, depth of a flat lid against the hole's diameter: they rise ever steeper."
 at_40, at_95 = (75 - np.sqrt(75**2 - d**2 / 4) for d in (40, 95))
 classroom.picture(
     fig, alt, f"R = 75 mm: {at_40:.1f} mm for a hole of 40 mm, {at_95:.1f} for 95"
@@ -97,7 +97,8 @@ print(f"burr hole: Dice {evaluate.dice(small.patch, burr.truth):.3f}")
 # %% tags=["nbval-check-output"]
 plane = symmetry.find(bone, openings[0].head_centre)
 print(
-    f"{np.degrees(plane.angle):.1f} degrees from the scan's mid-plane, {plane.offset:.1f} mm aside"
+    f"{np.degrees(plane.angle):.1f} degrees from the scan's mid-plane, "
+    f"{plane.offset:.1f} mm aside"
 )
 print(f"residual {plane.residual:.2f} mm (median)")
 
@@ -193,7 +194,8 @@ print(f"the paper's You: mean {row.mean} voxels, max {row.max}: ratio {row.mean 
 flat = you.design(bone, openings)
 row = measure.table3(flat, true, bone)["outer"]
 print(
-    f"here:            mean {row.mean:.2f} voxels, max {row.max:.2f}: ratio {row.mean / row.max:.2f}"
+    f"here:            mean {row.mean:.2f} voxels, max {row.max:.2f}: "
+    f"ratio {row.mean / row.max:.2f}"
 )
 
 # %% [markdown]
