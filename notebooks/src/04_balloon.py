@@ -296,10 +296,10 @@ for n in (11, 21, 41):
 # <details>
 # <summary>Answer</summary>
 #
-# Three to four times as many for twice `N`, and about a third for four times `dt`. Never a quarter, for the reason given
-# in the trap below: with small `dt` the curve "stops" earlier on its way. Because the scheme is implicit nothing blows
-# up; only the normal is taken from the old curve. (The apex falls with `N` because the clamped slope holds up a few
-# snaxels next to each end, and with fewer snaxels these are a larger part of the gap.)
+# Mostly three to four times as many for twice `N`, and about a third for four times `dt`. Never a quarter, for the
+# reason given in the trap below: with small `dt` the curve "stops" earlier on its way. Because the scheme is implicit
+# nothing blows up; only the normal is taken from the old curve. (The apex falls with `N` because the clamped slope
+# holds up a few snaxels next to each end, and with fewer snaxels these are a larger part of the gap.)
 #
 # </details>
 #

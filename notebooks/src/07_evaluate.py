@@ -86,10 +86,10 @@ for side, code in (("outer", OUTER), ("inner", INNER)):
 # <details>
 # <summary>Answer</summary>
 #
-# At the rim: all of the largest lie within 2 mm of bone, where one voxel more or less of slanted bone decides. One
-# would expect the middle to be worst, for it is farthest from any bone, and one wrong tangent (lesson 05) does most
-# harm there. But here six directions are averaged, and the middle is one of the *best* places. The inner side is a little
-# worse than the outer: the gap's inner ends are harder to see.
+# At the rim: all of the largest lie within 3.3 mm of bone, where one voxel more or less of slanted bone decides.
+# One would expect the middle to be worst, for it is farthest from any bone, and one wrong tangent (lesson 05) does
+# most harm there. But here six directions are averaged, and the middle is one of the *best* places. The inner side is
+# a little worse than the outer: the gap's inner ends are harder to see.
 #
 # </details>
 #
@@ -133,7 +133,7 @@ for name, voxels in tries.items():
 # <summary>Answer</summary>
 #
 # (a) For a thin shell Dice is harsh: a shift by one voxel (0.9 mm) across it costs far more than it would of a ball:
-# 0.830, our design 0.968. HD95 does not see the difference: both have 0.90 mm, one pixel. (b) HD95 sees what is
+# 0.830, our design 0.969. HD95 does not see the difference: both have 0.90 mm, one pixel. (b) HD95 sees what is
 # missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is as bad as the shift for Dice
 # (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints several.
 #

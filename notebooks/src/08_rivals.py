@@ -144,14 +144,15 @@ for name in ("our head", "lopsided"):
     print(f"{name}: offset {found['offset_mm']:.2f} mm, residual {found['residual_mm']:.2f} mm")
 
 # %% [markdown]
-# **Question.** Why does bending the image to the rim help one head and not the other? And why does the residual not give
-# the lopsided head away?
+# **Question.** Why does bending the image to the rim help one head so much more than the other? And why does the
+# residual not give the lopsided head away?
 #
 # <details>
 # <summary>Answer</summary>
 #
-# The phantom is nearly symmetric: its mirror image is right already, and the fit adds what little is ragged at the rim. On
-# the lopsided head the image stands beside the bone, and the rim knows by how much. Real heads are of the second kind.
+# The phantom is nearly symmetric: its mirror image is nearly right already, and the fit gains little (Dice 0.950 to
+# 0.961). On the lopsided head the image stands beside the bone, and the rim knows by how much (0.870 to 0.952). Real
+# heads are of the second kind.
 #
 # The residual is small as the plane has moved over, into the middle of the wider head. What is left shows only where the
 # shape differs, not the width. A small residual is necessary for a good mirror, not sufficient.
@@ -234,7 +235,8 @@ alt = "One slice, four methods: agreed light blue, missed bone orange, too much 
 classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
 
 # %% [markdown]
-# **Question.** Hull and flat fill are both straight between the rims. Why is the hull a little better?
+# **Question.** Hull and flat fill are both straight between the rims. Why is the hull better (Dice 0.637 against
+# 0.487)?
 #
 # <details>
 # <summary>Answer</summary>

@@ -21,7 +21,7 @@
 # **Time:** 35 minutes (text 15, questions 10, exercises 10). **You need:** lessons 04 and 07.
 #
 # **From the paper:** Tables 1, 2 and 3. Table 3 has a third row, for the method of You and others (2009), which the
-# authors compare theirs with. It and the reflection are not remade here.
+# authors compare theirs with. It and the reflection have their turn in lesson 08.
 
 # %%
 import numpy as np
@@ -201,10 +201,10 @@ _ = panel.set(**start)
 # What breaks the balance of pressure and tension. With k = 0.062 by hand in place of the pressure that follows from
 # the ends DSC falls from 0.955 to 0.417. A tension of 0.1 is worse still, 0.145: `k` is worked out for a tension of
 # 1, and a tenth of it no longer holds the balloon back. (The ends of the `k` slider spoil everything.) Then come
-# slicing along the scan's own planes (0.670), fitting tangents right at the cut (`skip` 0: 0.830), and a `reach` of 4
+# slicing along the scan's own planes (0.670), fitting tangents right at the cut (`skip` 0: 0.829), and a `reach` of 4
 # mm, too short to carry a tangent (0.892). The number of snaxels hardly matters: 11 do as well as 41.
 #
-# A `skip` of 4 to 6 mm does *better* than the default (0.965 to 0.969), on this one coarse head. But a value chosen
+# A `skip` of 4 to 6 mm does *better* than the default (0.964 to 0.969), on this one coarse head. But a value chosen
 # on one head fits that head, as the paper's `k` did.
 #
 # </details>
