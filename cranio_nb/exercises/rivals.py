@@ -71,10 +71,7 @@ RIVALS = {
         (
             (lambda a, b: ((a - b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a + b).mean(axis=0) / 2), _LONG),
-            (
-                lambda a, b: (a[0] - b[0], (a[0] + b[0]) / 2),
-                "The normal must have length 1: divide by it.",
-            ),
+            (lambda a, b: (a[0] - b[0], (a[0] + b[0]) / 2), _LONG),
             (
                 lambda a, b: (_plane(a, b)[0], a.mean(axis=0)),
                 "The plane passes through the points themselves: it lies half-way between the two of a pair.",
