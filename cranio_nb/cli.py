@@ -164,6 +164,9 @@ def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, a
     "--preset", type=click.Choice(PRESETS), default="default", show_default=True, help="paper: as published in 2011."
 )
 @click.option("--params", type=_PATH, metavar="JSON", help="File with options of the method: {name: value, ...}.")
+@click.option(
+    "--prior", "learned", type=_PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate."
+)
 @click.option("--lesion", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
 @click.option("--truth", type=_PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against.")
 @_mask
@@ -176,6 +179,7 @@ def design(
     method: str,
     preset: str,
     params: Path | None,
+    learned: Path | None,
     lesion: str | None,
     truth: Path | None,
     mask: bool,
@@ -198,6 +202,7 @@ def design(
     from .run import run_design
 
     options, planes = _options(method, params), _planes(lesion)
+    options |= {} if learned is None else {"prior": str(learned)}
     if out.resolve() == scan.resolve():
         raise click.BadParameter("this is the input; nothing is ever written there.", param_hint="--out")
     check_folder(out)

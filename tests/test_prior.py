@@ -1,5 +1,7 @@
 """The shape prior: what it learns from synthetic heads, and that what it foretells obeys the known bone."""
 
+import json
+
 import numpy as np
 import pytest
 from click.testing import CliRunner
@@ -10,6 +12,7 @@ from cranio_nb.cli import main
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.export import write_nifti
 from cranio_nb.lesion import find
+from cranio_nb.methods import thin_plate
 from cranio_nb.prior_file import VERSION, load, save
 from cranio_nb.volume import Volume
 
@@ -226,3 +229,28 @@ def test_the_command_refuses_a_folder_without_skulls(tmp_path):
     for folder in (tmp_path, tmp_path / "nowhere"):
         result = CliRunner().invoke(main, ["prior", "learn", str(folder), "--out", str(tmp_path / "prior.npz")])
         assert result.exit_code == 3 and result.stderr.startswith("cranio-nb: ") and not list(tmp_path.iterdir())
+
+
+def test_a_plate_with_a_prior_lies_half_way_to_what_skulls_let_expect(learned, skull, tmp_path):
+    bone = skull("unilateral")
+    save(learned, tmp_path / "prior.npz")
+    (alone,) = thin_plate.design(bone).working
+    made = thin_plate.design(bone, prior=str(tmp_path / "prior.npz"))
+    told, (plate,) = prior.expect(learned, bone, alone.chart), made.working
+    for side, bent, expected in ((plate.outer, alone.outer, told.outer), (plate.inner, alone.inner, told.inner)):
+        both = alone.chart.hole & np.isfinite(expected)
+        assert both.any()
+        np.testing.assert_allclose(side[both], (bent + expected)[both] / 2)
+    assert made.record["prior_skulls"] == len(learned.radii)
+    assert made.patch.voxels.any() and not (made.patch.voxels & bone.voxels).any()
+
+
+def test_the_command_takes_a_prior_for_the_plate_only(learned, skull, tmp_path):
+    save(learned, tmp_path / "prior.npz")
+    write_nifti(skull("burr_hole"), tmp_path / "skull.nii.gz")
+    wanted = ["design", str(tmp_path / "skull.nii.gz"), "--mask", "--prior", str(tmp_path / "prior.npz")]
+    made = CliRunner().invoke(main, [*wanted, "--method", "thin-plate", "--out", str(tmp_path / "out")])
+    assert made.exit_code == 0, made.output
+    assert json.loads((tmp_path / "out" / "design.json").read_text())["parameters"]["prior"]
+    refused = CliRunner().invoke(main, [*wanted, "--out", str(tmp_path / "other")])
+    assert refused.exit_code != 0 and not (tmp_path / "other").exists()

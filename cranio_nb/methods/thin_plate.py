@@ -22,8 +22,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import comb
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -31,9 +32,10 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from .. import __version__, chart, fill, lesion, surface, symmetry
+from .. import __version__, chart, fill, lesion, prior_file, surface, symmetry
 from ..chart import RadialChart
 from ..errors import InputRefused, NoOpening
+from ..prior import Prior, expect
 from ..prosthesis import Lesion, Prosthesis
 from ..symmetry import SymmetryPlane
 from ..volume import Volume
@@ -75,6 +77,7 @@ def design(
     second: float = 1.3,
     third: float = 1.8,
     mirror: float = 1.6,
+    prior: str = "",
     smooth: bool = True,
     progress: Callable[[str, float], None] | None = None,
 ) -> Prosthesis:
@@ -90,6 +93,9 @@ def design(
         The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
     mirror : float
         The length c over which bone is smoothed towards the curvature of the other side, mm; 0 for none.
+    prior : str
+        File made by `cranio-nb prior learn`; the radii are then the mean of the plate's and of those that intact skulls
+        let expect. Their errors have little in common. Empty for none.
     smooth : bool
         Surface without stairs (see `surface.extract`).
     progress : callable, optional
@@ -105,10 +111,13 @@ def design(
     ------
     NoOpening
         When the vault is closed, or too little bone is seen around every opening.
+    InputRefused
+        ``NoPrior`` or ``PriorDoesNotFit``.
     """
     options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
+    learned = prior_file.load(Path(prior)) if prior else None
     lesions = lesion.find(bone) if lesions is None else lesions
     tell("symmetry", 0.1)
     plane, found = _symmetry(bone, lesions[0]) if mirror else (None, {"unused": "not asked for"})
@@ -116,7 +125,8 @@ def design(
     plates = []
     for i, one in enumerate(lesions):
         tell("plates", 0.2 + 0.6 * i / len(lesions))
-        plates.append(_plate(bone, one, plane, {"second": second, "third": third, "likeness": mirror}))
+        plate = _plate(bone, one, plane, {"second": second, "third": third, "likeness": mirror})
+        plates.append(plate if learned is None else _informed(plate, learned, bone))
         patch |= _piece(plates[-1], one, bone)
     if not patch.any():
         raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
@@ -124,6 +134,8 @@ def design(
     mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
     sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
     record = {"version": __version__, "seconds": time.perf_counter() - began, "symmetry": found}
+    if learned is not None:
+        record["prior_skulls"] = len(learned.radii)
     return Prosthesis(mesh, sides, bone.with_voxels(patch), "thin-plate", options, record, tuple(plates))
 
 
@@ -247,6 +259,14 @@ def _plate(bone: Volume, one: Lesion, plane: SymmetryPlane | None, lengths: dict
         plate = bend(known, hole, vault.mm * nodes, like=like, **lengths)
         radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))
     return Plate(vault, radii[0], radii[1], mirrored)
+
+
+def _informed(plate: Plate, learned: Prior, bone: Volume) -> Plate:
+    """The mean of a plate and of what intact skulls let expect; the plate alone where the prior does not reach."""
+    expected = expect(learned, bone, plate.chart)
+    pairs = ((plate.outer, expected.outer), (plate.inner, expected.inner))
+    outer, inner = (np.where(np.isfinite(told), (bent + told) / 2, bent) for bent, told in pairs)
+    return replace(plate, outer=outer, inner=inner)
 
 
 def _piece(plate: Plate, one: Lesion, bone: Volume) -> NDArray[np.bool_]:
