@@ -22,14 +22,19 @@ import data_synth
 from cranio_nb import evaluate, fill, lesion, surface
 from cranio_nb.errors import CranioError
 from cranio_nb.methods import slicewise
-from cranio_nb.prosthesis import INNER, OUTER, Prosthesis
+from cranio_nb.prosthesis import DistanceStats, Lesion, Prosthesis
 from cranio_nb.readers import read_ct
-from cranio_nb.segment import segment
+from cranio_nb.run import design_for
+from cranio_nb.segment import BONE_HU, segment
 from cranio_nb.tables import PAPER_BALLOONS, PAPER_DISTANCES
+from cranio_nb.trial import contenders
+from cranio_nb.truth import against, table3, true_prosthesis
 from cranio_nb.volume import Volume
 
 HALF_MAXIMUM = 620.0
 """HU midway between the phantom's cortical bone (1200) and its brain (35): where a blurred edge really lies."""
+
+HEADING = f"{'min   max  mean   std     DSC  HD95, mm':>75s}"
 
 
 def phantom(defect: str = "unilateral", seed: int = 1) -> None:
@@ -37,25 +42,32 @@ def phantom(defect: str = "unilateral", seed: int = 1) -> None:
     truth = Volume(case.implant, case.affine)
     planes = np.flatnonzero(case.implant.any(axis=(1, 2)))
     print(f"\n== Phantom, full (512 x 512 x 68), {defect}: loss in {len(planes)} of {len(case.hu)} slices (paper: 23)")
-    for name, paper, threshold in (
-        ("paper preset", True, 400.0),
-        ("default", False, 400.0),
-        ("default, half-maximum threshold", False, HALF_MAXIMUM),
-    ):
+    for threshold in (BONE_HU, HALF_MAXIMUM):
         bone = segment(Volume(case.hu, case.affine), threshold=threshold)
-        made = slicewise.design(bone, **(slicewise.paper_options(bone) if paper else {}))
-        score = evaluate.score(made.patch, truth, bone)
-        print(f"\n-- {name} (HU >= {threshold:g}); DSC {score.dice:.3f}, HD95 {score.hd95:.2f} mm")
-        print("   slices:", dict(Counter(s["status"] for s in made.record["slices"])))
-        balloon_tables(made)
-        distance_table(made, reference(truth, bone), bone, "the truth")
-        if paper:
-            mirrored = mirror(case, bone)
-            distance_table(made, reference(mirrored, bone), bone, "the reflection")
+        lesions = lesion.find(bone)
+        print(f"\n-- HU >= {threshold:g}; Table 3 in voxels against the truth\n{HEADING}")
+        made = phantom_designs(bone, lesions, true_prosthesis(truth, bone, lesions[0]))
+        print("   slicewise:paper against the reflection, as in the paper")
+        mirrored = true_prosthesis(mirror(case, bone), bone, lesions[0])
+        print_distances("", table3(made["slicewise:paper"], mirrored, bone))
+        print_distances("printed in the paper", PAPER_DISTANCES)
+        for name in ("slicewise", "slicewise:paper"):
+            balloon_tables(name, made[name])
 
 
-def balloon_tables(made: Prosthesis) -> None:
-    """Tables 1 and 2: range of angles, iterations; and the number of snaxels."""
+def phantom_designs(bone: Volume, lesions: tuple[Lesion, ...], truth: Prosthesis) -> dict[str, Prosthesis]:
+    """Every method of the catalogue with each of its presets, measured: its name -> what it made."""
+    made = {}
+    for one in contenders():
+        design = made[one.name] = design_for(bone, lesions, one.method, one.preset, one.options)
+        seen = against(design, truth, bone)
+        print_distances(one.name, seen.table3, f"   {seen.score.dice:.3f}  {seen.score.hd95:5.2f}")
+    return made
+
+
+def balloon_tables(name: str, made: Prosthesis) -> None:
+    """Tables 1 and 2: range of angles, iterations; how the slices were filled, and the number of snaxels."""
+    print(f"   {name}: slices {dict(Counter(s['status'] for s in made.record['slices']))}")
     slices = [s for s in made.record["slices"] if "theta0" in s]
     print(f"   snaxels {made.parameters['n_snaxels']} (paper: 21)")
     for side, name in enumerate(("outer", "inner")):
@@ -68,22 +80,11 @@ def balloon_tables(made: Prosthesis) -> None:
         print(f"   Table {side + 1}, {name}: " + ", ".join(parts) + f", converged {done} of {len(slices)}")
 
 
-def distance_table(made: Prosthesis, truth: Prosthesis, bone: Volume, against: str) -> None:
-    """Table 3: one way, in pixels."""
-    px = float(bone.spacing[1:].mean())
-    for side, name, paper_name in ((OUTER, "top", "outer"), (INNER, "inner", "inner")):
-        d = evaluate.surface_distance(made.surface(side).vertices, truth.surface(side)) / px
-        s = evaluate.distance_stats(d)
-        p = PAPER_DISTANCES[paper_name]
-        print(
-            f"   Table 3, {name} against {against}, px: min {s.min:.2f} max {s.max:.2f} mean {s.mean:.2f}"
-            f" std {s.std:.2f}  p99 {np.percentile(d, 99):.2f}   (paper: max {p.max}, mean {p.mean}, std {p.std})"
-        )
-
-
-def reference(truth: Volume, bone: Volume) -> Prosthesis:
-    mesh = surface.extract(truth)
-    return Prosthesis(mesh, surface.face_sides(mesh, bone, lesion.head_centre(bone)), truth, "truth")
+def print_distances(name: str, rows: dict[str, DistanceStats], more: str = "") -> None:
+    """Rows of Table 3, the name and `more` on the first of them."""
+    for side, s in rows.items():
+        print(f"   {name:21s} {side:10s} {s.min:5.2f} {s.max:5.2f} {s.mean:5.2f} {s.std:5.2f}{more}", flush=True)
+        name = more = ""
 
 
 def mirror(case: Any, bone: Volume) -> Volume:
