@@ -34,7 +34,7 @@ from cranio_nb.volume import Volume
 HALF_MAXIMUM = 620.0
 """HU midway between the phantom's cortical bone (1200) and its brain (35): where a blurred edge really lies."""
 
-HEADING = f"{'min   max  mean   std     DSC  HD95, mm':>75s}"
+HEADING = f"{'min   max  mean   std     DSC  HD95, mm':>77s}"
 
 
 def phantom(defect: str = "unilateral", seed: int = 1) -> None:
