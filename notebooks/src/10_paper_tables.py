@@ -201,12 +201,13 @@ frame = ChordFrame.of(middle.ends[0], bone.to_voxel(openings[0].head_centre)[1:]
 ends = frame.end_angles(middle.ends[0])
 
 # %% tags=["nbval-check-output"]
-fig, (ax,) = classroom.axes(height=2.6, width=6.0)
+fig, (ax,) = classroom.axes(height=1.9, width=8.0)
 for curve, line, name in ((middle.start[0], "--", "start"), (middle.curves[0], "-", "at rest")):
     ax.plot(*(px * frame.to_chord(curve)).T, line, color=plot.BLUE, label=name)
 for x, angle, along in zip((0, px * frame.length), ends, (9, -9), strict=True):
     ax.plot([x, x + along], [0, along * np.tan(angle)], color=plot.GREEN, lw=2)
-ax.set(xlabel="x (mm)", ylabel="out of the head (mm)", aspect="equal")
+ax.set(xlabel="x (mm)", ylabel="out (mm)", aspect="equal")
+fig.legend(loc="outside right center", fontsize=8)
 alt = "An arch over the x axis from 0 to L; short straight lines are the tangents at its ends."
 line = "L = {:.0f} mm, angles {:.0f} and {:.0f} degrees"
 classroom.picture(fig, alt, line.format(px * frame.length, *np.degrees(ends)))
@@ -310,9 +311,9 @@ for one in made.working[0].slices[bad.plane - 1 : bad.plane + 2]:
     print(f"slice {one.plane + first}: theta0 outer {outer:.0f}, inner {inner:.0f} degrees")
 
 # %% [markdown]
-# The third patch is thick enough at its ends and loses its thickness between them: the outer curve leaves its end too
-# flat (16 degrees, in the slices beside it 20 and 21), the inner one too steep (25, beside it 18 and 22), and they
-# cross. It is as the authors say: "we did not get the suitable boundary conditions".
+# The third patch is too thin everywhere and torn in the middle: the outer curve leaves its end too flat (16 degrees, in
+# the slices beside it 20 and 21), the inner one too steep (25, beside it 18 and 22), so the two all but meet. It is as
+# the authors say: "we did not get the suitable boundary conditions".
 #
 # ## Figure 8: the skull before and after
 
@@ -371,16 +372,16 @@ classroom.picture(fig, alt, "means " + ", ".join(means) + " mm")
 #
 # You's closed skull; then both patches alone, from the side.
 
-# %% tags=["nbval-check-output"]
-patches = {"You et al.": "(a) its patch", "default": "(b) the default's"}
+# %%
 aside = np.cross(towards, [0, 0, 1.0])
+patches = {"You et al.": "(a) its patch", "default": "(b) the default's"}
+
+# %% tags=["nbval-check-output"]
 fig, panels = classroom.axes(3, height=2.8, width=9.0)
 look(panels[0], [(skull, IVORY), (designs["You et al."].mesh, BLUE)], towards, "(a) You et al.")
 for ax, (name, title) in zip(panels[1:], patches.items(), strict=True):
     look(ax, [(designs[name].mesh, BLUE)], aside, title, px=0.3)
-alt = (
-    "You's skull closed; from the side its patch is flat, the default's is curved like a shell."
-)
+alt = "You's skull closed; from the side its patch is flat, the default's bulges outwards."
 volumes = [f"{designs[name].mesh.volume / 1000:.1f}" for name in patches]
 classroom.picture(fig, alt, f"volumes {' and '.join(volumes)} cm3")
 
