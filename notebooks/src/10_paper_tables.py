@@ -184,7 +184,7 @@ for whose, row in (
 #
 # Voxels are no cubes, so the ratio needs mm. With the paper's grid (`"full"`), where a plane is as high as 5.6 pixels,
 # the ratio in mm is 0.53, but mean / max in voxels only 0.28: the nearest place one plane further is "one voxel" away.
-# The paper's 0.51 suggests that its "voxel units" are pixels. It does not say.
+# The paper's 0.51 suggests that its "voxel units" are pixels, or its voxels nearer to cubes. It does not say.
 #
 # </details>
 #
