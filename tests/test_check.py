@@ -271,13 +271,17 @@ WRONG = {
         ("return np.diff(np.eye(n), order - 1, axis=0)", "too low"),
     ],
     "9.2": [
-        ("D = np.diff(np.eye(len(f)), order, axis=0); return np.linalg.solve(np.eye(len(f)) + strength * D.T @ D, f)",
-         "as if it were bone"),
+        (
+            f"{SPLINE}; I = np.eye(len(f)); return np.linalg.solve(I + strength * D.T @ D, f)",
+            "as if it were bone",
+        ),
         (f"{SPLINE}; return np.linalg.solve(W + strength * D.T @ D, f)", "still pulls"),
         (f"{SPLINE}; return np.linalg.solve(np.eye(len(f)) + strength * D.T @ D, W @ f)", "held to 0"),
         (f"{SPLINE}; return np.linalg.solve(W + D.T @ D, W @ f)", "not used"),
-        (f"{SPLINE}; D = np.diff(np.eye(len(f)), 2, axis=0); return np.linalg.solve(W + strength * D.T @ D, W @ f)",
-         "Always the second"),
+        (
+            f"{SPLINE}; D = np.diff(np.eye(len(f)), 2, axis=0); return np.linalg.solve(W + strength * D.T @ D, W @ f)",
+            "Always the second",
+        ),
         (f"{SPLINE}; return np.linalg.solve(W + strength**2 * D.T @ D, W @ f)", "square"),
     ],
     "9.3": [
@@ -285,8 +289,11 @@ WRONG = {
         (f"{BASIS}; return (B * weights) @ points", "Divide by"),
         (f"{BASIS}; return (B * weights) @ points / weights.sum()", "changes along"),
         (f"{BASIS}; return B @ points / (B @ weights)[:, None]", "above the line"),
-        ("B = np.column_stack([(1 - t) ** 2, t * (1 - t), t**2]) * weights; "
-         "return B @ points / B.sum(axis=1, keepdims=True)", "2 t (1 - t)"),
+        (
+            "B = np.column_stack([(1 - t) ** 2, t * (1 - t), t**2]) * weights; "
+            "return B @ points / B.sum(axis=1, keepdims=True)",
+            "2 t (1 - t)",
+        ),
     ],
     "10.1": [
         ("v = [s[key][side] for s in slices]; return min(v), max(v)", "no balloon"),

@@ -31,7 +31,8 @@ _TOP = 2.0  # mm: upper end of the scale of errors
 _PLATE, _SHEET = 3, 4  # every so many rays
 _SPAN = 25.0  # mm between the knots of the sheet
 _DEEP = 0.8  # part of its radius to which the sheet is pushed in before it is let go
-_LEAN = np.radians(50)  # of the view onto the net
+_LEAN = np.radians(25)  # of the view onto the net
+_ANY = 1e-9  # a mean above this has something in it; sums of zeros may be a little off
 _TOL = 0.02  # mm a step: at rest
 
 Array = NDArray[np.float64]
@@ -60,7 +61,7 @@ def coarse(vault: RadialChart, every: int) -> RadialChart:
     """A chart of every n-th ray, counted from its middle; radii are means of their neighbours."""
     shown = [np.where(vault.hole, np.nan, radius) for radius in (vault.outer, vault.inner)]
     outer, inner = (thin_plate.thinned(radius, every) for radius in shown)
-    hole = thin_plate.thinned(vault.hole.astype(float), every) > 0
+    hole = thin_plate.thinned(vault.hole.astype(float), every) > _ANY
     return replace(vault, step=vault.step * every, outer=outer, inner=inner, hole=hole)
 
 
@@ -154,7 +155,8 @@ def _draw_profile(canvas: Canvas, scene: Scene, plate: Array) -> None:
     seen = np.concatenate([bone[near], scene.true[row][near]])
     seen = seen[np.isfinite(seen)] if np.isfinite(seen).any() else np.nan_to_num(plate[row])
     ends = (float(x[near].min()), float(x[near].max())) if near.any() else (-1.0, 1.0)
-    chart2d = Chart((_SIDE, 8, _WIDE, _SIDE - 16), ends, (float(seen.min()) - 2, float(seen.max()) + 3))
+    low, high = float(seen.min()), float(seen.max())
+    chart2d = Chart((_SIDE, 8, _WIDE, _SIDE - 16), ends, (low - 1, high + 0.35 * (high - low) + 1))
     chart2d.frame(canvas, "radius of the outer surface (mm)", "along the map's middle row (mm)")
     for curve, colour, width, dash in ((scene.true[row], VERMILLION, 2.0, (7, 4)), (plate[row], BLUE, 2.5, None)):
         for part in _runs(np.isfinite(curve) & near):
@@ -270,7 +272,7 @@ def _draw_cut(canvas: Canvas, way: Way, one: Sheet) -> None:
     control = one.control[len(one.control) // 2]
     wide = float(np.abs(springs.points[:, 0]).max()) + 5
     high = float(springs.points[:, 2].max()) + 8
-    cut = Chart((_SIDE, 0, _WIDE, 250), (-wide, wide), (min(0.0, float(springs.points[:, 2].min())), high))
+    cut = Chart((_SIDE, 0, _WIDE, 250), (-wide, wide), (float(springs.points[:, 2].min()) - 8, high))
     cut.frame(canvas, "a cut through the middle: out of the head (mm)", "across the hole (mm)")
     canvas.dots(cut.px(points[:, [0, 2]]), BONE, radius=3.5, edge=BLACK)
     u = np.linspace(0, one.spans[1], 80)
