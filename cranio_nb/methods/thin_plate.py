@@ -251,11 +251,11 @@ def _plate(bone: Volume, one: Lesion, plane: SymmetryPlane | None, lengths: dict
         other = chart.along(vault, plane.mirrored(bone))
         mirrored = np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
     nodes = max(1, round(_NODES / vault.mm))
-    hole = _thinned(vault.hole.astype(float), nodes) > 0
+    hole = thinned(vault.hole.astype(float), nodes) > 0
     radii = []
     for i, radius in enumerate((vault.outer, vault.inner)):
-        known = _thinned(np.where(vault.hole, np.nan, radius), nodes)
-        like = None if mirrored is None else _thinned(mirrored[i], nodes)
+        known = thinned(np.where(vault.hole, np.nan, radius), nodes)
+        like = None if mirrored is None else thinned(mirrored[i], nodes)
         plate = bend(known, hole, vault.mm * nodes, like=like, **lengths)
         radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))
     return Plate(vault, radii[0], radii[1], mirrored)
@@ -277,8 +277,21 @@ def _piece(plate: Plate, one: Lesion, bone: Volume) -> NDArray[np.bool_]:
     return fill.main_piece(chart.voxelise(plate.chart, outer, inner, bone), one.opening.voxels)
 
 
-def _thinned(values: Array, nodes: int) -> Array:
-    """Every n-th value about the map's middle, as the mean of its known neighbours; nan where less than half are."""
+def thinned(values: Array, nodes: int) -> Array:
+    """Every n-th value about a map's middle, as the mean of its known neighbours, so that the scan's stairs even out.
+
+    Parameters
+    ----------
+    values : ndarray, shape (M, M)
+        nan where unknown.
+    nodes : int
+        n.
+
+    Returns
+    -------
+    ndarray, shape (K, K)
+        nan where less than half of the neighbours are known.
+    """
     known = np.isfinite(values)
     width = 2 * (nodes // 2) + 1
     share = ndimage.uniform_filter(known.astype(float), width)
@@ -288,7 +301,7 @@ def _thinned(values: Array, nodes: int) -> Array:
 
 
 def _refined(values: Array, nodes: int, shape: tuple[int, ...]) -> Array:
-    """The map that `_thinned` would have made these values from: cubic between the nodes."""
+    """The map that `thinned` would have made these values from: cubic between the nodes."""
     nearest = ndimage.distance_transform_edt(np.isnan(values), return_distances=False, return_indices=True)
     start = (shape[0] // 2) % nodes
     return ndimage.map_coordinates(values[tuple(nearest)], (np.indices(shape) - start) / nodes, order=3, mode="nearest")

@@ -10,6 +10,7 @@ from .bone import ct_viewer, threshold
 from .gap import features
 from .inflation import balloon
 from .panel import Panel, View, static_twin
+from .plates import bent_plate, elastic_sheet
 from .rivals import guiding_points, symmetry_plane
 from .solid import evaluation, surface
 from .stack import patch
@@ -20,7 +21,9 @@ __all__ = [
     "Tuner",
     "View",
     "balloon",
+    "bent_plate",
     "ct_viewer",
+    "elastic_sheet",
     "evaluation",
     "features",
     "guiding_points",

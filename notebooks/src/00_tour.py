@@ -33,7 +33,7 @@
 # | 3 deformable model | ends and tangents | outer and inner curve across the gap | 04 |
 # | 4 volume | curves | patch of voxels | 05 |
 # | 5 surface | patch | closed triangle mesh | 06 |
-# | and afterwards | mesh and truth | how good is it? what else closes it? | 07, 08, 10 |
+# | and afterwards | mesh and truth | how good is it? what else closes it? | 07 to 10 |
 
 # %%
 import numpy as np

@@ -1,0 +1,356 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 09 Three dimensions: a thin plate, and a sheet that comes to rest
+#
+# The paper closes a hole slice by slice and names "3D deformable models" and D-NURBS as its future. Here are both: a plate
+# bent across the hole, and an elastic sheet that moves. Both see the whole rim at once, and both are a linear system that
+# you can write down in one line.
+#
+# **After this lesson you can**
+# - draw the vault as a map of radii, and say what "flat" means on it;
+# - tell what the second and the third order of a bending energy continue, and why one takes both;
+# - read M p'' + D p' + K p = f, and say which of its terms decide where a sheet comes to rest;
+# - say what a learned prior adds, and what it needs.
+#
+# **Time:** 60 minutes (text 25, questions 10, exercises 25). **You need:** lessons 04 and 07; 08 for the mirror.
+#
+# **From the paper:** section 4, its future work; Table 3 for the distances.
+
+# %%
+import numpy as np
+
+from cranio_nb import chart, check, classroom, evaluate, lesion, plot, segment, widgets
+from cranio_nb import truth as measure
+from cranio_nb.methods import dnurbs, slicewise, thin_plate
+
+# %% [markdown]
+# ## Parameters
+#
+# | method | name | meaning | unit | here |
+# |---|---|---|---|---|
+# | thin plate | `second`, a | length over which the second order smooths | mm | 1.3 |
+# | thin plate | `third`, b | the same for the third order | mm | 1.8 |
+# | thin plate | `mirror`, c | the same towards the other side's curvature | mm | 1.6 |
+# | thin plate | `prior` | a file of `cranio-nb prior learn` | | none |
+# | D-NURBS | `wavelength` | ripples of this length are halved | mm | 20 |
+# | D-NURBS | `span` | between the knots | mm | 8 |
+#
+# *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, as in lesson 07. The
+# numbers in the answers are those of `"class"`.
+
+# %%
+case = classroom.load("class", needs_truth=True)
+bone = segment.segment(case.ct)
+openings = lesion.find(bone)
+true = measure.true_prosthesis(case.truth, bone, openings[0])
+
+# %% [markdown]
+# ## 1. The vault as a map
+#
+# From a point inside the head (the *eye*) each direction meets the vault once on its inner and once on its outer side. So
+# a surface in space becomes a picture: one radius per direction. The map is *azimuthal-equidistant*: the direction of the
+# hole is its middle, and distances from the middle are true, as on a map of the world centred on the pole.
+
+# %% tags=["nbval-check-output"]
+vault = chart.look(bone, openings[0])
+fig, axes = classroom.axes(2, height=3.8)
+half = (len(vault.outer) // 2 + 0.5) * vault.mm
+maps = {"outer radius (mm)": vault.outer, "thickness (mm)": vault.outer - vault.inner}
+for ax, (name, values) in zip(axes, maps.items(), strict=True):
+    beside = np.where(vault.hole, np.nan, values)
+    shown = ax.imshow(beside, cmap="cividis", extent=(-half, half, half, -half))
+    fig.colorbar(shown, ax=ax)
+    ax.set(title=name, xlabel="mm", ylabel="mm")
+alt = "Two maps of the vault around the hole, which is white: outer radius, and thickness."
+n = len(vault.outer)
+classroom.picture(fig, alt, f"{n} x {n} rays, {vault.mm:.2f} mm apart")
+
+# %% [markdown]
+# A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
+# no better than flat starts from a sphere. (The flat fill of lesson 08 started from a plane.)
+#
+# ## 2. Two orders of bending
+#
+# First in one dimension. Of all curves g, take the one that lies close to the data f where there are data (w = 1, else 0)
+# and bends least:
+#
+# sum w (g - f)^2 + a^(2 n) sum (D^n g)^2,   D^n the n-th difference.
+#
+# Setting the derivative to zero gives (W + a^(2 n) D^T D) g = W f. The length a says over what distance data are
+# smoothed. What costs nothing shows what a plate wants to be: a straight line for n = 2, a parabola for n = 3.
+#
+# **Predict:** a bow with a gap of 50 mm, bone on 25 mm beside it. Which order comes out too low for a large a?
+
+# %% tags=["nbval-check-output"]
+x = np.arange(-50.0, 51)
+bow = np.sqrt(75**2 - x**2)
+known = np.abs(x) > 25
+noisy = bow + np.random.default_rng(0).normal(0, 0.2, len(x))
+bridges = {}
+for order, length in ((2, 2), (2, 10), (3, 2), (3, 10)):
+    D, W = np.diff(np.eye(len(x)), order, axis=0), np.diag(known.astype(float))
+    g = np.linalg.solve(W + length ** (2 * order) * D.T @ D, W @ noisy)
+    bridges[f"order {order}, a = {length} mm"] = g - bow
+
+# %% tags=["nbval-check-output"]
+fig, (ax,) = classroom.axes(height=3.2)
+classroom.plot_lines(ax, x, bridges, xlabel="along the bow (mm)", ylabel="above the truth (mm)")
+ax.axvspan(-25, 25, color=plot.BONE, alpha=0.4)
+alt = (
+    "Four bridges minus the true bow, the gap grey: two orders, each smoothing little and much."
+)
+middle = ", ".join(f"{name}: {g[50]:+.2f}" for name, g in bridges.items())
+classroom.picture(fig, alt, f"in the middle (mm): {middle}")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# The second order: it pulls the smoothed data beside the gap towards a straight line, and so takes away the very slope
+# that would carry the bridge up. The third order lets the rim's curvature be, but it also carries every bump of the rim
+# across the gap, for a parabola fitted to 25 mm of noisy bone is not well known 25 mm further on. One errs by bias, the
+# other by noise.
+#
+# </details>
+#
+# ## 3. The plate
+#
+# On the map the same is done with all partial differences, and both orders together:
+#
+# sum w (g - f)^2 + a^4 |D^2 g|^2 + b^6 |D^3 g|^2 + c^4 sum v |D^2 (g - m)|^2.
+#
+# - Both orders: their errors have little in common, so the mean of both wills errs less than either as a rule.
+# - The weights w fall with the residual (Cauchy's: 1 / (1 + (r / 3 s)^2), s from the median). Bone that does not belong to
+#   the vault, a ridge or a sinus, is let go after a round or two.
+# - m is the **mirrored** side. Only its *curvature* enters: a mirror image that stands 3 mm aside, or is 3 mm too wide, has
+#   the same second differences. That is what is soft about this prior: no step at the rim, as a copy would leave
+#   (lesson 08), and where the other side has no bone the term is gone.
+#
+# **Predict, then move, then explain.** In the hole of our head the map's radius falls and rises again. Will the second
+# order alone, made strong (a = 12), be too high or too deep? And the third alone at b = 1.8? What if all three are 0?
+#
+# Controls: `second`, `third`, `mirror`, e.g. `plate.set(second=12, third=0, mirror=0)`.
+
+# %% tags=["nbval-check-output"]
+plate = widgets.bent_plate(bone, openings[0], true)
+plate
+
+# %% tags=["nbval-check-output"]
+trials = (12, 0, 0), (1.3, 0, 0), (0, 1.8, 0), (1.3, 1.8, 0), (1.3, 1.8, 1.6), (0, 0, 0)
+for a, b, c in trials:
+    print(plate.set(second=a, third=b, mirror=c).view.line.split(" in the hole")[0])
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# ANSWER_PLATE
+#
+# </details>
+#
+# ## 4. A learned prior
+#
+# `cranio-nb prior learn FOLDER --out prior.npz` lays intact skulls on their mean, measures their radii along the same 6400
+# rays, and keeps them as samples of a Gaussian process: each radius has a mean, and each pair of radii a covariance. For a
+# skull with a hole, the known radii y give the missing ones as the *conditional mean*
+#
+# f* = mu* + K* (K + s^2 I)^-1 (y - mu),
+#
+# one linear system again. With `prior="prior.npz"` the design is the mean of the plate and of this expectation. The
+# plate errs by what it takes from the rim, the prior by what this head has of its own; the two have little in common.
+# Measured on the ten cases of SkullFix (Kodym et al. 2021): Dice 0.932 with the thin plate, 0.940 with the prior. No prior
+# is shipped: learn one from scans that you may use. It is never needed.
+#
+# ## 5. A sheet that moves
+#
+# A surface of D-NURBS ("dynamic non-uniform rational B-splines") is a weighted mean of control points p,
+#
+# s(u, v) = sum w_ij p_ij B_i(u) B_j(v) / sum w_ij B_i(u) B_j(v),
+#
+# and a body with mass: the control points obey Newton's law,
+#
+# M p'' + D p' + K p = f.
+#
+# M is the mass, D the friction, K the stiffness of a thin plate, f the pull of springs to the bone around the hole. It is
+# the balloon of lesson 04 with one dimension more, with inertia, and without a pressure. Ours has a *natural shape*: the
+# sphere that fits the bone best is free of stress, and bending is counted from there.
+#
+# **Predict, then move, then explain.** The sheet is pushed into the head and let go. Does a heavier sheet, or one with
+# more friction, come to rest elsewhere? Does a stiffer one? And where do the control points lie, on the sheet?
+#
+# Controls: `wavelength`, `mass`, `damping`, `step`, e.g. `elastic.set(mass=5)`.
+
+# %% tags=["nbval-check-output"]
+elastic = widgets.elastic_sheet(bone, openings[0], true)
+elastic
+
+# %% tags=["nbval-check-output"]
+for moved in ({"step": 1}, {"step": 40}, {"mass": 5}, {"mass": 1, "wavelength": 80}):
+    print(moved, elastic.set(**moved).view.line, sep="\n  ")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# ANSWER_SHEET
+#
+# </details>
+#
+# ## 6. Side by side
+#
+# The hole of the class, and a larger one, 95 to 115 mm across. Distances in voxels, as in the paper's Table 3.
+#
+# **Predict:** for which hole do three dimensions pay?
+
+# %%
+wide = classroom.load("class", defect="large", needs_truth=True)
+methods = {"slice method": slicewise, "thin plate": thin_plate, "D-NURBS": dnurbs}
+made = {name: method.design(bone, openings) for name, method in methods.items()}
+skull = segment.segment(wide.ct)
+largest = lesion.find(skull)
+over = {name: method.design(skull, largest) for name, method in methods.items()}
+
+# %% tags=["nbval-check-output"]
+print("              outer mean   max   inner mean   max    Dice    large: Dice  HD95 (mm)")
+for name, one in made.items():
+    seen = measure.against(one, true, bone)
+    out, inn = seen.table3["outer"], seen.table3["inner"]
+    print(f"{name:12} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
+    far, patch = evaluate.hd95(over[name].patch, wide.truth), over[name].patch
+    print(f" {seen.score.dice:7.3f} {evaluate.dice(patch, wide.truth):14.3f} {far:9.2f}")
+print("paper              1.10  2.89         0.72  3.16")
+
+# %% tags=["nbval-check-output"]
+at = sum(largest[0].planes) // 2
+fig, axes = classroom.axes(3, height=4.2)
+lost, px = wide.truth.voxels[at], wide.px
+for ax, (name, one) in zip(axes, over.items(), strict=True):
+    patch = one.patch.voxels[at]
+    classroom.show_mask(ax, skull.voxels[at], px=px)
+    classroom.show_mask(ax, lost & ~patch, px=px, colour="#D55E00")
+    classroom.show_mask(ax, patch & ~lost, px=px, colour="#0072B2")
+    classroom.show_mask(ax, patch & lost, px=px, colour="#56B4E9", title=name)
+    classroom.zoom(ax, [np.argwhere(lost | patch)], px=px, margin=8)
+alt = "One slice, three methods: agreed light blue, missed bone orange, too much dark blue."
+classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# ANSWER_TABLE
+#
+# </details>
+#
+# ## A mistake to make once
+#
+# "Smoothing only does harm", so set the length to 0. Then nothing is said of the gap any more, and the system has no
+# single answer:
+
+# %% tags=["raises-exception"]
+np.linalg.solve(W + 0 * D.T @ D, W @ noisy)
+
+# %% [markdown]
+# The plate of section 3 holds what nothing else holds to the mean radius, very faintly, and so gave *an* answer for
+# a = b = c = 0: a lid with a step all around it.
+#
+# ## Exercises
+#
+# **Exercise 9.1.** Differences as a matrix. Return D, shape (n - order, n), so that D @ g is the difference of this order
+# of g: for order 1 the rows are -1, 1; for order 2 they are 1, -2, 1. (The sign does not matter here.)
+
+
+# %% tags=["solution"]
+def differences(n, order):
+    """Matrix of the differences of an order of n values, shape (n - order, n)."""
+    return np.diff(np.eye(n), order, axis=0)
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("9.1", differences)
+
+# %% [markdown]
+# **Exercise 9.2.** The smoothing spline across a gap. `f` are values, `known` says which of them are data (what stands in
+# the gap means nothing), `order` is that of the difference and `strength` its factor in the energy. Return the g that
+# solves (W + strength D^T D) g = W f.
+
+
+# %% tags=["solution"]
+def bridge(f, known, order, strength):
+    """Values, shape (n,), close to the data and with the least differences."""
+    D, W = np.diff(np.eye(len(f)), order, axis=0), np.diag(known.astype(float))
+    return np.linalg.solve(W + strength * D.T @ D, W @ f)
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("9.2", bridge)
+
+# %% tags=["expected"]
+fig, (ax,) = classroom.axes(height=3.0)
+parabola = 75 - x**2 / 150
+lines = {f"order {n}": bridge(parabola, known, n, 1e3) - parabola for n in (1, 2, 3)}
+classroom.plot_lines(ax, x, lines, xlabel="mm", ylabel="above the truth (mm)")
+alt = "Bridges minus a true parabola: orders 1 and 2 are off in the gap, order 3 nowhere."
+classroom.picture(fig, alt, f"order 3: {np.abs(lines['order 3']).max():.3f} mm off at most")
+
+# %% [markdown]
+# **Exercise 9.3.** A rational curve. `points` (3, 2) are control points, `weights` (3,) their weights, `t` (k,) parameters
+# from 0 to 1. With B = (1 - t)^2, 2 t (1 - t), t^2 return the points sum w_i B_i p_i / sum w_i B_i, shape (k, 2). With
+# the weights 1, 1 / sqrt 2, 1 three points make a quarter of a circle, exactly.
+
+
+# %% tags=["solution"]
+def rational(points, weights, t):
+    """Points of a rational curve of second degree, shape (k, 2)."""
+    B = np.column_stack([(1 - t) ** 2, 2 * t * (1 - t), t**2])
+    share = B * weights
+    return share @ points / share.sum(axis=1, keepdims=True)
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("9.3", rational)
+
+# %% tags=["expected"]
+fig, (ax,) = classroom.axes(height=3.2, width=5.0)
+corner, t = np.array([[75.0, 0.0], [75.0, 75.0], [0.0, 75.0]]), np.linspace(0, 1, 41)
+for w, (colour, style) in zip((0.3, np.sqrt(0.5), 2.0), classroom.LINES, strict=False):
+    ax.plot(
+        *rational(corner, np.array([1, w, 1]), t).T,
+        color=colour,
+        ls=style,
+        label=f"w = {w:.2f}",
+    )
+ax.plot(*corner.T, "o--", color=plot.BLACK, lw=0.8, label="control points")
+ax.set(xlabel="mm", ylabel="mm", aspect="equal")
+ax.legend(fontsize=8)
+radius = np.linalg.norm(rational(corner, np.array([1, np.sqrt(0.5), 1]), t), axis=1)
+alt = "Three curves between two points: the larger the middle weight, the closer to the corner."
+classroom.picture(fig, alt, f"w = 0.71: radius {radius.min():.3f} to {radius.max():.3f} mm")
+
+# %% [markdown]
+# ## Summary
+#
+# - On a map of radii a prosthesis is two pictures, and closing the hole is filling them in.
+# - Order 2 flattens (bias), order 3 carries the rim's curvature and its bumps (noise); both together err less.
+# - The other side is asked for its curvature only, so that an asymmetric head leaves no step.
+# - Mass and friction decide how a sheet comes to rest, stiffness and springs decide where.
+#
+# | paper | code | unit |
+# |---|---|---|
+# | the vault around the hole | `chart.look`, `RadialChart` | mm per ray |
+# | 3D deformable model | `thin_plate.bend`, `thin_plate.design` | mm |
+# | D-NURBS | `sheet.Sheet`, `sheet_motion.relax`, `dnurbs.design` | mm |
+# | Table 3 | `truth.table3` | voxels |
+#
+# **Further reading.** Carr, Fright and Beatson, *Surface interpolation with radial basis functions for medical imaging*,
+# IEEE Transactions on Medical Imaging 16 (1997): thin plates on skulls. Qin and Terzopoulos, *D-NURBS: a physics-based
+# framework for geometric design*, IEEE TVCG 2 (1996). Rasmussen and Williams, *Gaussian processes for machine learning*
+# (2006), chapter 2. Kodym et al., *SkullBreak / SkullFix: dataset for automatic cranial implant design*, Data in Brief 35
+# (2021).
