@@ -128,7 +128,7 @@ for order, length in ((2, 2), (2, 10), (3, 2), (3, 10)):
 
 # %% [markdown]
 # With a = 10 mm the second order is 0.76 mm too low and the third 0.75 mm too high (a bow is no parabola); with a = 2 mm
-# the third has no bias and a spread of 1.58 mm. Both together can err less than either.
+# the third has hardly any bias and a spread of 1.58 mm. Both together can err less than either.
 #
 #
 # ## 3. The plate
