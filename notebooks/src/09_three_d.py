@@ -130,7 +130,6 @@ for order, length in ((2, 2), (2, 10), (3, 2), (3, 10)):
 # With a = 10 mm the second order is 0.76 mm too low and the third 0.75 mm too high (a bow is no parabola); with a = 2 mm
 # the third has hardly any bias and a spread of 1.58 mm. Both together can err less than either.
 #
-#
 # ## 3. The plate
 #
 # On the map the same is done with all partial differences, and both orders together:
@@ -141,7 +140,7 @@ for order, length in ((2, 2), (2, 10), (3, 2), (3, 10)):
 # - The weights w fall with the residual (Cauchy's: 1 / (1 + (r / 3 s)^2), s from the median). Bone that does not belong to
 #   the vault, a ridge or a sinus, is let go after a round or two.
 # - m is the **mirrored** side. Only its *curvature* enters: a mirror image that stands 3 mm aside, or is 3 mm too wide, has
-#   the same second differences. That is what is soft about this prior: no step at the rim, as a copy would leave
+#   nearly the same second differences. That is what is soft about this prior: no step at the rim, as a copy would leave
 #   (lesson 08), and where the other side has no bone the term is gone.
 #
 # **Predict, then move, then explain.** In the hole of our head the map's radius falls and rises again. Will the second
