@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from scipy import ndimage
 
 from cranio_nb import balloon, chart, evaluate, features, run, segment, symmetry, widgets
 from cranio_nb.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
@@ -92,6 +93,8 @@ def make_all(ct, skull, opened, arch, made, true):
         "evaluation": widgets.evaluation(made, true),
         "guiding_points": widgets.guiding_points(skull, opened, true),
         "symmetry_plane": widgets.symmetry_plane(skull, opened),
+        "bent_plate": widgets.bent_plate(skull, opened, true),
+        "elastic_sheet": widgets.elastic_sheet(skull, opened, true),
     }
 
 
@@ -135,6 +138,7 @@ def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
     moves = {"ct_viewer": ("width", 400), "threshold": ("hu", 900), "features": ("reach", 25.0), "balloon": ("n", 41)}
     moves |= {"patch": ("curves", False), "surface": ("steps", 0), "evaluation": ("side", "inner")}
     moves |= {"guiding_points": ("n", 5), "symmetry_plane": ("turn", 4.0)}
+    moves |= {"bent_plate": ("second", 9.0), "elastic_sheet": ("step", 1)}
     for name, panel in panels.items():
         assert close(pixels_of(panel), panel.view.rgb), name
         before = panel.front.image.value
@@ -316,6 +320,48 @@ def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, lesions):
     found, surface = symmetry.find(skull(), centre), symmetry.look(skull(), centre)
     other = widgets.rivals.moved(found, surface, turn=0.0, lean=0.0, shift=1.0)
     np.testing.assert_allclose(other.mirror(centre) - found.mirror(centre), 2 * found.normal, atol=1e-9)
+
+
+def error_of(line):
+    return float(line.split("rms ")[1].split(" mm")[0])
+
+
+def test_a_plate_that_is_held_by_nothing_errs_most(static, skull, lesions, true):
+    panel = widgets.bent_plate(skull(), lesions()[0], true)
+    bent = error_of(panel.view.line)
+    assert bent < 1.0 < error_of(panel.set(second=0.0, third=0.0, mirror=0.0).view.line)
+
+
+def test_the_hole_of_a_coarse_chart_holds_the_hole_and_nothing_far_from_it(skull, lesions):
+    fine = chart.look(skull(), lesions()[0])
+    vault = widgets.plates.coarse(fine, 3)
+    start = (len(fine.hole) // 2) % 3
+    assert vault.hole[fine.hole[start::3, start::3]].all()
+    grown = ndimage.binary_dilation(fine.hole, np.ones((3, 3)))[start::3, start::3]
+    assert not (vault.hole & ~grown).any()
+
+
+def test_panels_of_plates_need_no_truth(static, skull, lesions):
+    for panel in (widgets.bent_plate, widgets.elastic_sheet):
+        assert "in the hole" not in panel(skull(), lesions()[0]).view.line
+
+
+def test_mass_and_friction_do_not_move_the_place_of_rest(skull, lesions):
+    vault = widgets.plates.coarse(chart.look(skull(), lesions()[0]), 4)
+    ways = [widgets.plates.relaxing(vault, 40.0, mass, damping) for mass, damping in ((0.0, 1.0), (3.0, 2.0))]
+    first, second = (way.motions[-1].sheet.control for way in ways)
+    assert all(way.motions[-1].converged for way in ways)
+    np.testing.assert_allclose(first, second, atol=0.2)
+    for way in ways:
+        energy = [motion.energy for motion in way.motions]
+        assert (np.diff(energy) <= 1e-9 * energy[0]).all()
+
+
+def test_the_step_of_a_sheet_is_kept_within_its_way(static, skull, lesions, true):
+    panel = widgets.elastic_sheet(skull(), lesions()[0], true)
+    last = panel.view.limits["step"]
+    assert panel.view.line.startswith(f"Step {last} of {last}, at rest")
+    assert panel.set(step=0).view.line.startswith(f"Step 0 of {last}, not at rest")
 
 
 def test_the_tuner_hands_its_parameters_to_the_design_command(static, phantom, tmp_path):

@@ -65,9 +65,8 @@ def coarse(vault: RadialChart, every: int) -> RadialChart:
     return replace(vault, step=vault.step * every, outer=outer, inner=inner, hole=hole)
 
 
-def look(bone: Volume, lesion: Lesion, truth: Prosthesis | None, every: int) -> Scene:
+def look(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
     """The vault around a hole and, where it is known, the bone that is missing in it."""
-    fine = chart.look(bone, lesion)
     vault = coarse(fine, every)
     if truth is None or truth.patch is None:
         return Scene(vault, np.where(vault.hole, np.nan, vault.outer))
@@ -86,10 +85,10 @@ def bent_plate(bone: Volume, lesion: Lesion, truth: Prosthesis | None = None) ->
     truth : Prosthesis, optional
         The missing bone with its patch, where it is known (`truth.true_prosthesis`).
     """
-    scene = look(bone, lesion, truth, _PLATE)
+    fine = chart.look(bone, lesion)
+    scene = look(fine, bone, truth, _PLATE)
     try:
-        mirror = symmetry.find(bone, lesion.head_centre)
-        other = chart.along(chart.look(bone, lesion), mirror.mirrored(bone))
+        other = chart.along(fine, symmetry.find(bone, lesion.head_centre).mirrored(bone))
         scene = replace(scene, mirrored=coarse(other, _PLATE).outer)
     except InputRefused:  # no plane of symmetry: the third slider has no effect
         pass
@@ -133,8 +132,9 @@ def _errors(off: Array) -> str:
 
 def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_]) -> None:
     """Absolute errors over the chart, the hole outlined, and their scale."""
-    side = _SIDE - 90
-    at = np.linspace(0, len(off) - 1, side).round().astype(int)
+    side, middle = _SIDE - 90, len(off) // 2
+    reach = int(np.abs(np.argwhere(np.isfinite(off) | hole) - middle).max(initial=1))
+    at = np.linspace(max(middle - reach, 0), min(middle + reach, len(off) - 1), side).round().astype(int)
     rgb = coloured(np.abs(off[np.ix_(at, at)]).astype(np.float32), _TOP)
     inside = hole[np.ix_(at, at)]
     edge = inside & ~(np.roll(inside, 2, 0) & np.roll(inside, -2, 0) & np.roll(inside, 2, 1) & np.roll(inside, -2, 1))
@@ -200,7 +200,7 @@ def elastic_sheet(bone: Volume, lesion: Lesion, truth: Prosthesis | None = None)
     truth : Prosthesis, optional
         The missing bone with its patch, where it is known (`truth.true_prosthesis`).
     """
-    scene = look(bone, lesion, truth, _SHEET)
+    scene = look(chart.look(bone, lesion), bone, truth, _SHEET)
     run = lru_cache(maxsize=16)(lambda *values: relaxing(scene.vault, *values))
     controls = (
         Slider("wavelength", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
