@@ -251,7 +251,7 @@ def _plate(bone: Volume, one: Lesion, plane: SymmetryPlane | None, lengths: dict
         other = chart.along(vault, plane.mirrored(bone))
         mirrored = np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
     nodes = max(1, round(_NODES / vault.mm))
-    hole = thinned(vault.hole.astype(float), nodes) > 0
+    hole = thinned(vault.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
     radii = []
     for i, radius in enumerate((vault.outer, vault.inner)):
         known = thinned(np.where(vault.hole, np.nan, radius), nodes)
