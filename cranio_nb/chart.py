@@ -138,7 +138,7 @@ def voxelise(
     """
     filled = np.isfinite(outer) & np.isfinite(inner)
     region = ndimage.binary_dilation(filled & chart.hole, iterations=max(1, round(1.0 / chart.mm)))
-    spread = [_extended(np.where(filled, radius, np.nan)) for radius in (outer, inner)]
+    spread = [casting.extended(np.where(filled, radius, np.nan)) for radius in (outer, inner)]
     # what reaches over the rim ends with the bone's own surface: no flap and no film lies on the bone
     outside = ~chart.hole | _level(spread[0] - chart.outer)
     inside = ~chart.hole | _level(chart.inner - spread[1])
@@ -262,9 +262,3 @@ def _usual_thickness(thickness: NDArray[np.float64], around: NDArray[np.bool_]) 
         weight = 1 / np.maximum(1, residual / (1.4826 * np.median(residual) + 1e-6))
     rows, cols = np.ogrid[: thickness.shape[0], : thickness.shape[1]]
     return plane[0] + plane[1] * rows + plane[2] * cols
-
-
-def _extended(radius: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Radius map with its unknown parts filled from the nearest known ray."""
-    nearest = ndimage.distance_transform_edt(np.isnan(radius), return_distances=False, return_indices=True)
-    return radius[tuple(nearest)]

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from .casting import extended
 from .errors import InputRefused, NoOpening
 from .prosthesis import Lesion
 from .volume import Volume
@@ -178,18 +179,12 @@ def _cast(bone: Volume, eye: NDArray, directions: NDArray) -> tuple[NDArray, NDA
         radius[hit] = length
     shape = directions.shape[:2]
     radius, last_seen = radius.reshape(shape), last_seen.reshape(shape)
-    return radius, last_seen >= _extended(radius) - _EDGE
-
-
-def _extended(radius: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Radius map with its unknown rays filled from the nearest known one."""
-    nearest = ndimage.distance_transform_edt(np.isnan(radius), return_distances=False, return_indices=True)
-    return radius[tuple(nearest)]
+    return radius, last_seen >= extended(radius) - _EDGE
 
 
 def _bridge(sky: Sky, parts: list[NDArray[np.bool_]]) -> NDArray[np.float64]:
     """Radius of a membrane across the openings, shape (M, M), mm: harmonic between the rims."""
-    radius = _extended(sky.radius)
+    radius = extended(sky.radius)
     hole = np.logical_or.reduce(parts)
     for _ in range(200):
         radius[hole] = ndimage.uniform_filter(radius, 3)[hole]

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from .casting import extended
 from .chart import RadialChart
 from .rays import RayProfile
 from .volume import Volume
@@ -99,10 +100,9 @@ def profile(chart: RadialChart, fan: Fan) -> RayProfile:
     inside = ((at >= 0) & (at <= len(chart.outer) - 1)).all(axis=0)
     hole = ndimage.map_coordinates(chart.hole.astype(np.float32), at, order=1) > 0.5
     known = np.isfinite(chart.outer)
-    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
     seen = inside & (ndimage.map_coordinates(known.astype(np.float32), at, order=1) > 0.99)
     inner, outer = (
-        np.where(seen, ndimage.map_coordinates(radius[tuple(nearest)], at, order=1, mode="nearest"), np.nan)
+        np.where(seen, ndimage.map_coordinates(extended(radius), at, order=1, mode="nearest"), np.nan)
         for radius in (chart.inner, chart.outer)
     )
     return RayProfile(np.zeros(2), fan.angles, inner, outer, hole)

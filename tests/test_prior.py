@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from scipy import ndimage
 
 from cranio_nb import casting, headframe, prior, prior_study, vaultmap
 from cranio_nb import chart as radial
@@ -13,6 +14,7 @@ from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.export import write_nifti
 from cranio_nb.lesion import find
 from cranio_nb.methods import thin_plate
+from cranio_nb.prior import Expected
 from cranio_nb.prior_file import VERSION, load, save
 from cranio_nb.volume import Volume
 
@@ -231,18 +233,34 @@ def test_the_command_refuses_a_folder_without_skulls(tmp_path):
         assert result.exit_code == 3 and result.stderr.startswith("cranio-nb: ") and not list(tmp_path.iterdir())
 
 
-def test_a_plate_with_a_prior_lies_half_way_to_what_skulls_let_expect(learned, skull, tmp_path):
+def test_a_prior_draws_the_plate_towards_what_skulls_let_expect_but_not_off_the_rim(learned, skull, tmp_path):
     bone = skull("unilateral")
     save(learned, tmp_path / "prior.npz")
     (alone,) = thin_plate.design(bone).working
     made = thin_plate.design(bone, prior=str(tmp_path / "prior.npz"))
-    told, (plate,) = prior.expect(learned, bone, alone.chart), made.working
-    for side, bent, expected in ((plate.outer, alone.outer, told.outer), (plate.inner, alone.inner, told.inner)):
-        both = alone.chart.hole & np.isfinite(expected)
-        assert both.any()
-        np.testing.assert_allclose(side[both], (bent + expected)[both] / 2)
+    (plate,) = made.working
+    inside = ndimage.distance_transform_edt(plate.chart.hole) * plate.chart.mm
+    rim, middle = (inside > 0) & (inside < 3), inside > 15
+    for bent, held, expected in zip(
+        (alone.outer, alone.inner), (plate.outer, plate.inner), plate.expected, strict=True
+    ):
+        assert np.abs(held - expected)[middle].mean() < np.abs(bent - expected)[middle].mean()
+        assert np.abs(held - bent)[rim].mean() < np.abs(held - bent)[middle].mean()
     assert made.record["prior_skulls"] == len(learned.radii)
     assert made.patch.voxels.any() and not (made.patch.voxels & bone.voxels).any()
+
+
+def test_a_prior_that_does_not_reach_the_hole_changes_nothing(learned, skull, tmp_path, monkeypatch):
+    bone = skull("burr_hole")
+    save(learned, tmp_path / "prior.npz")
+
+    def nowhere(prior, bone, chart):
+        return Expected(*np.full((2, *chart.hole.shape), np.nan), None)
+
+    monkeypatch.setattr(thin_plate, "expect", nowhere)
+    made = thin_plate.design(bone, prior=str(tmp_path / "prior.npz"))
+    np.testing.assert_array_equal(made.patch.voxels, thin_plate.design(bone).patch.voxels)
+    assert made.working[0].expected is None
 
 
 def test_the_command_takes_a_prior_for_the_plate_only(learned, skull, tmp_path):

@@ -97,6 +97,20 @@ def test_an_unknown_other_side_changes_nothing():
     np.testing.assert_array_equal(bend(known(WAVE), HOLE, MM, like=blank), bend(known(WAVE), HOLE, MM))
 
 
+def test_the_plate_lies_on_what_is_expected_if_the_bone_does():
+    alone, told = (bend(known(WAVE), HOLE, MM, expected=e) - WAVE for e in (None, WAVE))
+    assert np.abs(alone[HOLE]).max() > 0.1
+    np.testing.assert_allclose(told[HOLE | BESIDE], 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("mm", "least", "most"), [(0.5, 0.0, 0.02), (2.0, 0.2, 0.8), (5.0, 3.0, 4.8)])
+def test_what_is_expected_counts_the_more_the_wider_the_hole_and_nothing_at_the_rim(mm, least, most):
+    plate = bend(known(POLYNOMIALS[0]), HOLE, mm, expected=np.full((N, N), 78.0)) - 74  # the bone lies at 74
+    middle, rim = AWAY < 4.0, HOLE & (AWAY > 20.0)  # of holes of 11, 44, 110 mm
+    assert least <= plate[middle].min() and plate[middle].max() <= most
+    assert np.abs(plate[rim]).max() < 0.5
+
+
 def test_too_little_bone_gives_no_plate():
     values = np.full((N, N), np.nan)
     values[0, :5] = 75.0

@@ -32,6 +32,7 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from .. import __version__, chart, fill, lesion, surface, symmetry
+from ..casting import extended
 from ..chart import RadialChart
 from ..errors import InputRefused
 from ..prosthesis import Lesion, Prosthesis
@@ -173,7 +174,7 @@ def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) ->
     own = chart.look(bone, one)
     image = chart.along(own, plane.mirrored(bone))
     known = np.isfinite(image.outer) & ~image.hole
-    outer, inner = (_extended(r, known) for r in (image.outer, image.inner))
+    outer, inner = (extended(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
     if fit_rim:
         finest = max(_SMOOTH, 2 * float(bone.spacing.max()))
         outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
@@ -184,12 +185,6 @@ def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) ->
     if made.lost > _TOLERATED:
         keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / own.mm)))
     return replace(made, outer=np.where(keep, outer, np.nan), inner=np.where(keep, inner, np.nan))
-
-
-def _extended(values: NDArray[np.float64], known: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """A map with its unknown parts filled from the nearest known ray."""
-    nearest = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
-    return values[tuple(nearest)]
 
 
 def _difference(own: RadialChart, difference: NDArray[np.float64], smooth: float) -> NDArray[np.float64]:
@@ -209,10 +204,10 @@ def _difference(own: RadialChart, difference: NDArray[np.float64], smooth: float
     for _ in range(5):
         solved = splu((energy + sparse.diags_array(weight)).tocsc()).solve(weight * data)
         weight = known[area] / (1 + ((data - solved) / _OUTLIER) ** 2)
-    coarse = np.zeros(area.shape)
+    coarse = np.full(area.shape, np.nan)
     coarse[area] = solved
     v, u = np.indices(difference.shape) / skip
-    return ndimage.map_coordinates(_extended(coarse, area), [v, u], order=1, mode="nearest")
+    return ndimage.map_coordinates(extended(coarse), [v, u], order=1, mode="nearest")
 
 
 def _laplacian(area: NDArray[np.bool_]) -> sparse.csr_array:

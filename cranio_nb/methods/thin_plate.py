@@ -2,11 +2,17 @@
 
 Idea: seen from inside the head each surface of the vault is one radius per direction (`chart`). A plate that lies on
 the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
-other side of the skull has bone, and D^n all partial derivatives of order n on the chart, the radii g minimise
+other side of the skull has bone, radii e that are expected, and D^n all partial derivatives of order n on the chart,
+the radii g = e + h minimise
 
-    sum w (g - f)^2 + a^4 |D^2 g|^2 + b^6 |D^3 g|^2 + c^4 sum v |D^2 (g - m)|^2 .
+    sum w (g - f)^2 + a^4 |D^2 h|^2 + b^6 |D^3 h|^2 + c^4 sum v |D^2 (g - m)|^2 + s sum |h|^2 .
 
-The second order pulls smoothed bone towards planes, the third towards quadrics, so that it carries the rim's
+Without a prior e is one radius for all and s is 0: the plate is a piece of a sphere that is bent. With one, e is what
+intact skulls let expect given this skull's bone, and springs s hold the plate to it in the hole. Near the rim the
+plate is the better informed, in the middle of a wide hole the springs are; where the other side tells of the shape,
+the plate is stiffer and heeds them less.
+
+The second order pulls smoothed bone towards spheres, the third towards quadrics, so that it carries the rim's
 curvature into the hole, but also the rim's bumps; both together err less than either. The last term asks the plate to
 be curved as the other side is; it knows nothing of where the other side lies, so an asymmetric head and a plane that
 is a little off leave no step at the rim. The lengths a, b, c (mm) say over what distance bone is smoothed; across the
@@ -15,14 +21,14 @@ sinuses (Cauchy's weights, iterated). Each surface is one sparse symmetric syste
 
 Source: thin plates in cranioplasty are Carr, Fright and Beatson 1997 (doi 10.1109/42.563663): radial basis functions
 on a depth map, second order, interpolating. Ours are the radial chart, finite differences in place of radial
-functions, the third order, the smoothing, the robust weights, the inner surface and the mirrored side.
+functions, the third order, the smoothing, the robust weights, the inner surface, the mirrored side and the springs.
 """
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import comb
 from pathlib import Path
 from typing import Any
@@ -33,6 +39,7 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from .. import __version__, chart, fill, lesion, prior_file, surface, symmetry
+from ..casting import extended
 from ..chart import RadialChart
 from ..errors import InputRefused, NoOpening
 from ..prior import Prior, expect
@@ -46,6 +53,8 @@ _NODES = 2.0  # mm between the nodes of the plate
 _REACH = 25.0  # mm of bone beside the hole that the plate lies on
 _HOLDS = (0.01, 0.1, 1.0, 1.0)  # how firmly the data hold in each round of weighting
 _LEAST_SPREAD = 0.05  # mm: residuals below this are no outliers
+_SPRING = 1e-4  # s: draws the middle of a hole of 75 mm half the way to what is expected, (64 a^4 / s)^(1/4) = R
+_RAYS_APART = 3.0  # mm between the rays on which skulls were learned: what is finer there is noise
 _FAINT = 1e-10  # weight that holds the plate to the mean radius where bone holds it nowhere
 _LEAST_NODES = 12
 
@@ -62,12 +71,15 @@ class Plate:
         Radii of the prosthesis, mm; nan outside the hole.
     mirrored : tuple of ndarray, shape (M, M), or None
         Outer and inner radii of the other side of the skull; nan where it has none.
+    expected : tuple of ndarray, shape (M, M), or None
+        Outer and inner radii that a prior lets expect.
     """
 
     chart: RadialChart
     outer: Array
     inner: Array
     mirrored: tuple[Array, Array] | None
+    expected: tuple[Array, Array] | None
 
 
 def design(
@@ -94,8 +106,7 @@ def design(
     mirror : float
         The length c over which bone is smoothed towards the curvature of the other side, mm; 0 for none.
     prior : str
-        File made by `cranio-nb prior learn`; the radii are then the mean of the plate's and of those that intact skulls
-        let expect. Their errors have little in common. Empty for none.
+        File made by `cranio-nb prior learn`: the plate is then held to what intact skulls let expect. Empty for none.
     smooth : bool
         Surface without stairs (see `surface.extract`).
     progress : callable, optional
@@ -125,8 +136,7 @@ def design(
     plates = []
     for i, one in enumerate(lesions):
         tell("plates", 0.2 + 0.6 * i / len(lesions))
-        plate = _plate(bone, one, plane, {"second": second, "third": third, "likeness": mirror})
-        plates.append(plate if learned is None else _informed(plate, learned, bone))
+        plates.append(_plate(bone, one, plane, learned, {"second": second, "third": third, "likeness": mirror}))
         patch |= _piece(plates[-1], one, bone)
     if not patch.any():
         raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
@@ -145,6 +155,7 @@ def bend(
     mm: float,
     *,
     like: Array | None = None,
+    expected: Array | None = None,
     second: float = 1.3,
     third: float = 1.8,
     likeness: float = 1.6,
@@ -161,6 +172,8 @@ def bend(
         Distance between neighbours on the map.
     like : ndarray, shape (M, N), optional
         A map of the same curvature, up to anything; nan where unknown.
+    expected : ndarray, shape (M, N), optional
+        A map to bend less far from, known everywhere; springs hold the plate to it in the hole.
     second, third, likeness : float
         The lengths a, b and c of the energy, mm; 0 for none.
 
@@ -174,14 +187,16 @@ def bend(
     known = (np.isfinite(values) & ~hole)[beside]
     if known.sum() < _LEAST_NODES:
         return out
-    level = np.median(values[beside][known])
-    data = np.where(known, values[beside] - level, 0.0)
+    base = np.full(values.shape, np.median(values[beside][known])) if expected is None else expected
+    data = np.where(known, (values - base)[beside], 0.0)
     stiffness = _stiffness(beside, 2, second / mm) + _stiffness(beside, 3, third / mm)
     push = np.zeros(len(data))
     if like is not None and likeness:
-        held, push = _towards(like[beside], beside, likeness / mm)
+        held, push = _towards((like - base)[beside], beside, likeness / mm)
         stiffness = stiffness + held
-    out[beside] = level + _settle(stiffness, push, data, known)
+    if expected is not None:
+        stiffness = stiffness + sparse.diags_array(_SPRING * hole[beside])
+    out[beside] = base[beside] + _settle(stiffness, push, data, known)
     return out
 
 
@@ -243,30 +258,39 @@ def _symmetry(bone: Volume, one: Lesion) -> tuple[SymmetryPlane | None, dict[str
     return plane, plane.record()
 
 
-def _plate(bone: Volume, one: Lesion, plane: SymmetryPlane | None, lengths: dict[str, float]) -> Plate:
+def _plate(
+    bone: Volume, one: Lesion, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
+) -> Plate:
     """Both plates of one lesion."""
     vault = chart.look(bone, one)
-    mirrored = None
-    if plane is not None:
-        other = chart.along(vault, plane.mirrored(bone))
-        mirrored = np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
+    mirrored = None if plane is None else _other_side(bone, vault, plane)
+    expected = None if learned is None else _expected(bone, vault, learned)
     nodes = max(1, round(_NODES / vault.mm))
     hole = thinned(vault.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
     radii = []
     for i, radius in enumerate((vault.outer, vault.inner)):
-        known = thinned(np.where(vault.hole, np.nan, radius), nodes)
-        like = None if mirrored is None else thinned(mirrored[i], nodes)
-        plate = bend(known, hole, vault.mm * nodes, like=like, **lengths)
+        known = np.where(vault.hole, np.nan, radius)
+        like, likely = (None if maps is None else thinned(maps[i], nodes) for maps in (mirrored, expected))
+        plate = bend(thinned(known, nodes), hole, vault.mm * nodes, like=like, expected=likely, **lengths)
         radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))
-    return Plate(vault, radii[0], radii[1], mirrored)
+    return Plate(vault, radii[0], radii[1], mirrored, expected)
 
 
-def _informed(plate: Plate, learned: Prior, bone: Volume) -> Plate:
-    """The mean of a plate and of what intact skulls let expect; the plate alone where the prior does not reach."""
-    expected = expect(learned, bone, plate.chart)
-    pairs = ((plate.outer, expected.outer), (plate.inner, expected.inner))
-    outer, inner = (np.where(np.isfinite(told), (bent + told) / 2, bent) for bent, told in pairs)
-    return replace(plate, outer=outer, inner=inner)
+def _other_side(bone: Volume, vault: RadialChart, plane: SymmetryPlane) -> tuple[Array, Array]:
+    """Outer and inner radii of the mirrored skull along the chart's rays; nan where it lacks bone."""
+    other = chart.along(vault, plane.mirrored(bone))
+    return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
+
+
+def _expected(bone: Volume, vault: RadialChart, learned: Prior) -> tuple[Array, Array] | None:
+    """Outer and inner radii that a prior lets expect, continued where it does not reach; None where it never does."""
+    told = expect(learned, bone, vault)
+    if not (np.isfinite(told.outer) & vault.hole).any():
+        return None
+    outer, inner = (
+        ndimage.gaussian_filter(extended(radius), _RAYS_APART / vault.mm) for radius in (told.outer, told.inner)
+    )
+    return outer, inner
 
 
 def _piece(plate: Plate, one: Lesion, bone: Volume) -> NDArray[np.bool_]:
@@ -302,6 +326,5 @@ def thinned(values: Array, nodes: int) -> Array:
 
 def _refined(values: Array, nodes: int, shape: tuple[int, ...]) -> Array:
     """The map that `thinned` would have made these values from: cubic between the nodes."""
-    nearest = ndimage.distance_transform_edt(np.isnan(values), return_distances=False, return_indices=True)
     start = (shape[0] // 2) % nodes
-    return ndimage.map_coordinates(values[tuple(nearest)], (np.indices(shape) - start) / nodes, order=3, mode="nearest")
+    return ndimage.map_coordinates(extended(values), (np.indices(shape) - start) / nodes, order=3, mode="nearest")
