@@ -75,7 +75,7 @@ _json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead
 @click.version_option(__version__, prog_name="cranio-nb")
 @_debug
 def main() -> None:
-    r"""From a head CT with a hole in the skull to the prosthesis that closes it.
+    """From a head CT with a hole in the skull to the prosthesis that closes it.
 
     For teaching and research; not a medical device, not for clinical use.
 
@@ -93,7 +93,7 @@ def main() -> None:
 @click.option("--size", type=click.Choice(_SIZES), default="full", show_default=True, help="Grid of the synthetic CT.")
 @_debug
 def demo(out: Path, size: str) -> None:
-    r"""Design and score a prosthesis for a synthetic head CT.
+    """Design and score a prosthesis for a synthetic head CT.
 
     The CT is written as a DICOM series into OUT/ct and read back like any other scan. "full" is the size of the
     paper's scan, 512 x 512 x 68.
@@ -129,7 +129,7 @@ def demo(out: Path, size: str) -> None:
 @_allow
 @_debug
 def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, allow: tuple[str, ...]) -> None:
-    r"""Write a head with a hole, and the bone that is missing.
+    """Write a head with a hole, and the bone that is missing.
 
     Files: OUT/ct (DICOM; OUT/mask.nii.gz for a mask), OUT/truth.nii.gz and OUT/truth.json.
 
@@ -186,7 +186,7 @@ def design(
     threshold: float | None,
     allow: tuple[str, ...],
 ) -> None:
-    r"""Design the prosthesis that closes the hole in a skull.
+    """Design the prosthesis that closes the hole in a skull.
 
     INPUT is a folder of DICOM files, or a NIfTI or NRRD file with a CT in HU or a bone mask. Written are
     prosthesis.stl (world mm, LPS), patch.nii.gz (on the input's grid), design.json and report.html; all or nothing.
@@ -232,7 +232,7 @@ def design(
 @_json
 @_debug
 def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, ...], as_json: bool) -> None:
-    r"""Show how a scan is read and which openings its skull has.
+    """Show how a scan is read and which openings its skull has.
 
     \b
     Examples:
@@ -269,7 +269,7 @@ def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, .
 @_json
 @_debug
 def score(patch: Path, truth: Path, skull: Path, threshold: float | None, as_json: bool) -> None:
-    r"""Measure a patch against the true one; all three on one grid.
+    """Measure a patch against the true one; all three on one grid.
 
     \b
     Examples:
@@ -294,7 +294,7 @@ def score(patch: Path, truth: Path, skull: Path, threshold: float | None, as_jso
 @main.command()
 @_debug
 def doctor() -> None:
-    r"""Check this machine: versions, packages, memory, drawing.
+    """Check this machine: versions, packages, memory, drawing.
 
     One line for each, with its remedy. The exit code is 1 if something needed is missing.
 

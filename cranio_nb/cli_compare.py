@@ -40,7 +40,7 @@ def compare(
     threshold: float | None,
     allow: tuple[str, ...],
 ) -> None:
-    r"""Let several methods close the same hole, and set them side by side.
+    """Let several methods close the same hole, and set them side by side.
 
     The scan is read and segmented once; each method runs in a process of its own. A method that refuses is a row with
     its reason; where none makes anything the exit code is 4. Without --out the table is printed and nothing is written.

@@ -12,7 +12,7 @@ import click
 @click.option("--no-browser", is_flag=True, help="Print the address instead of opening a browser.")
 @click.option("--port", type=int, help="Port to listen on.  [default: 8888, or the next free one]")
 def lab(folder: Path | None, no_browser: bool, port: int | None) -> None:
-    r"""Open the lessons in JupyterLab, at the tour.
+    """Open the lessons in JupyterLab, at the tour.
 
     FOLDER holds the lessons; by default ./notebooks. Nothing but JupyterLab is started; Ctrl+C ends it.
 

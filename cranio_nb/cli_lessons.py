@@ -11,7 +11,7 @@ _PATH = click.Path(path_type=Path)
 
 @click.group()
 def lessons() -> None:
-    r"""Make the lesson notebooks from their texts; grade what students hand in.
+    """Make the lesson notebooks from their texts; grade what students hand in.
 
     \b
     Examples:
@@ -26,7 +26,7 @@ def lessons() -> None:
 @click.option("--only", default="", metavar="NN", help="Only lessons whose name starts so, e.g. 04.")
 @click.option("--check", is_flag=True, help="Write nothing; exit code 1 if the notebooks are out of step.")
 def build(folder: Path, only: str, check: bool) -> None:
-    r"""Run the lesson texts and write the notebooks and the copies with exercises.
+    """Run the lesson texts and write the notebooks and the copies with exercises.
 
     \b
     Examples:
@@ -51,7 +51,7 @@ def build(folder: Path, only: str, check: bool) -> None:
 @click.argument("out", type=_PATH)
 @click.option("--folder", type=_PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
 def html(out: Path, folder: Path) -> None:
-    r"""Write the lessons as web pages, every picture with its description; nothing is run.
+    """Write the lessons as web pages, every picture with its description; nothing is run.
 
     \b
     Example:
@@ -66,7 +66,7 @@ def html(out: Path, folder: Path) -> None:
 @lessons.command()
 @click.argument("notebooks", nargs=-1, required=True, type=_PATH)
 def grade(notebooks: tuple[Path, ...]) -> None:
-    r"""Run notebooks that students hand in, and print the points of each exercise.
+    """Run notebooks that students hand in, and print the points of each exercise.
 
     They are run as programs on this machine, with your rights: use a machine that you can spare.
 

@@ -11,7 +11,7 @@ _PATH = click.Path(path_type=Path)
 
 @click.group()
 def prior() -> None:
-    r"""Learn from intact skulls what vaults look like.
+    """Learn from intact skulls what vaults look like.
 
     \b
     Example:
@@ -24,7 +24,7 @@ def prior() -> None:
 @click.option("--out", type=_PATH, required=True, metavar="NPZ", help="File to write, e.g. prior.npz.")
 @click.option("--threshold", type=float, metavar="HU", help="Lowest HU of bone.  [default: 400]")
 def learn(folder: Path, out: Path, threshold: float | None) -> None:
-    r"""Learn a shape prior from a folder with one scan of each head.
+    """Learn a shape prior from a folder with one scan of each head.
 
     FOLDER holds NIfTI or NRRD files, or subfolders of DICOM files: CTs in HU, or bone masks. Scans that do not show
     a whole, closed skull are skipped. Printed is how the error in a hole of 70 mm falls with the number of skulls.

@@ -54,7 +54,7 @@ def slice_features(bone: NDArray[np.bool_], *, min_part: float = 0.03) -> SliceF
     spines = [_unforked(longest_path(np.argwhere(labels == part)), depth) for part in range(1, n_parts + 1)]
     spines = sorted((s for s in spines if len(s) > 3), key=len, reverse=True)
     points = np.argwhere(thin)
-    if not spines or np.ptp(points, axis=0).min() < 2:
+    if not spines or np.linalg.matrix_rank(points - points[0]) < 2:  # a straight line has no hull
         raise SliceProblem("NoSkeleton", "The bone of the slice is too small to have a spine.")
     return SliceFeatures(boundary.astype(float), tuple(spines), ConvexHull(points).equations, _is_ring(bone))
 

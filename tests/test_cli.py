@@ -378,7 +378,9 @@ def test_doctor_finds_what_is_needed():
 @pytest.mark.parametrize("command", [(), *[(name,) for name in sorted(main.commands)]], ids=str)
 def test_every_command_has_help_with_examples(command):
     result = cranio(*command, "--help")
-    assert result.exit_code == 0 and "Example" in result.stdout and "cranio-nb" in result.stdout
+    examples = result.stdout.split("Example")[1].split("\n\n")[0].splitlines()[1:]
+    assert result.exit_code == 0 and examples
+    assert all(line.strip().startswith("cranio-nb ") for line in examples)  # each on a line of its own
 
 
 def test_import_and_help_load_nothing_heavy():

@@ -239,6 +239,12 @@ def test_a_slice_without_a_spine_says_so(box, code):
     assert problem.value.code == code
 
 
+def test_a_straight_diagonal_is_no_vault():
+    with pytest.raises(SliceProblem) as problem:
+        slice_features(np.eye(50, dtype=bool))
+    assert problem.value.code == "NoSkeleton"
+
+
 def test_too_little_bone_to_fit_a_tangent_says_so(ring):
     seen = slice_features(ring(60, 75, half_gap=20))
     with pytest.raises(SliceProblem) as problem:
