@@ -17,7 +17,8 @@ Learned   `headframe` lays a skull on the mean head; `vaultmap` radius maps on i
 Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share; `tetrahedra` mask -> mesh,
           `solid` mesh -> voxels, `membrane` rim -> flat fill; `sheet` and `sheet_motion` elastic surfaces
 Methods   `methods.slicewise` the paper; `hull`, `reflection`, `you`, `thin_plate`, `dnurbs` its rivals; every method
-          is `design(bone, lesions, *, options) -> Prosthesis`, and `catalogue` knows them by name
+          is `design(bone, lesions, *, options) -> Prosthesis`, which `assembly` puts together from a patch, and
+          `catalogue` knows them by name
 Outside   `run` the pipeline as one call; `trial` a method in a process of its own; `truth`, `compare` methods against
           the missing bone and each other; `tables`, `render`, `plot`, `report`, `compare_page`, `outputs`, `console`,
           `doctor`, `prior_study`, `cli`. Only `plot` imports matplotlib

@@ -168,15 +168,3 @@ def _crossing(values: NDArray, offsets: NDArray, rays: NDArray, at: NDArray, sid
     here, there = values[rays, at], values[rays, beside]
     t = np.clip((here - 0.5) / np.maximum(here - there, 1e-6), 0, 1)
     return offsets[at] + t * side * _SAMPLE * (beside != at)
-
-
-def extended(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """A map with its unknown parts filled from the nearest known ray.
-
-    Parameters
-    ----------
-    values : ndarray, shape (M, N)
-        nan where unknown.
-    """
-    nearest = ndimage.distance_transform_edt(np.isnan(values), return_distances=False, return_indices=True)
-    return values[tuple(nearest)]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from . import casting
+from .maps import extended
 from .prosthesis import Lesion
 from .volume import Volume
 
@@ -138,7 +139,7 @@ def voxelise(
     """
     filled = np.isfinite(outer) & np.isfinite(inner)
     region = ndimage.binary_dilation(filled & chart.hole, iterations=max(1, round(1.0 / chart.mm)))
-    spread = [casting.extended(np.where(filled, radius, np.nan)) for radius in (outer, inner)]
+    spread = [extended(np.where(filled, radius, np.nan)) for radius in (outer, inner)]
     # what reaches over the rim ends with the bone's own surface: no flap and no film lies on the bone
     outside = ~chart.hole | _level(spread[0] - chart.outer)
     inside = ~chart.hole | _level(chart.inner - spread[1])

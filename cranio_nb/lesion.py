@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .casting import extended
 from .errors import InputRefused, NoOpening
+from .maps import extended
 from .prosthesis import Lesion
 from .volume import Volume
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .casting import extended
 from .chart import RadialChart
+from .maps import extended
 from .rays import RayProfile
 from .volume import Volume
 

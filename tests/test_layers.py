@@ -12,7 +12,7 @@ import cranio_nb
 ROOT = Path(cranio_nb.__file__).parent
 WITNESS = ROOT.parent / "data_synth"
 
-NOUNS = {"errors", "volume", "curves", "mesh", "prosthesis"}
+NOUNS = {"errors", "volume", "curves", "maps", "mesh", "prosthesis"}
 MESH_WORK = {"nearest", "crossings", "mesh_check", "tetrahedra", "solid", "membrane"}  # geometry of triangle meshes
 STAGES = {
     "readers",
@@ -36,7 +36,8 @@ LEARNED = {  # from other skulls, and whom each may see
     "prior": {"headframe", "chart", "vaultmap"},
     "prior_file": {"headframe", "prior", "vaultmap"},
 }
-CORE = NOUNS | MESH_WORK | set(SHEETS) | STAGES | set(VAULT) | set(LEARNED)
+ASSEMBLY = {"assembly": {"surface"}}  # the last step of every method
+CORE = NOUNS | MESH_WORK | set(SHEETS) | STAGES | set(VAULT) | set(LEARNED) | set(ASSEMBLY)
 OWNERS = {"matplotlib": {"plot"}, "pyvista": {"view3d"}, "ipywidgets": {"widgets.live"}}
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
 
@@ -83,6 +84,8 @@ def allowed(name):
         return NOUNS | SHEETS[room]
     if room in LEARNED:
         return NOUNS | LEARNED[room]
+    if room in ASSEMBLY:
+        return NOUNS | ASSEMBLY[room]
     if room in STAGES:
         return NOUNS | MESH_WORK
     if room == "methods":

@@ -31,7 +31,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .. import __version__, chart, fill, lesion, sheet, sheet_motion, surface
+from .. import chart, fill, lesion, sheet, sheet_motion
+from ..assembly import assemble
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
 from ..sheet import Material, Sheet, Springs
@@ -127,19 +128,13 @@ def design(
         made = fit(chart.look(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
         piece = chart.voxelise(made.vault, *chart.thickened(made.vault, *radii), bone)
-        patch |= _main_piece(piece, one.opening.voxels)
+        patch |= fill.main_piece(piece, one.opening.voxels)
         working.append(made)
     if not patch.any():
         raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")
     tell("surface", 0.9)
-    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
-    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
-    record = {
-        "version": __version__,
-        "seconds": time.perf_counter() - began,
-        "sheets": [entry for made in working for entry in _entries(made)],
-    }
-    return Prosthesis(mesh, sides, bone.with_voxels(patch), "dnurbs", options, record, tuple(working))
+    sheets = [entry for made in working for entry in _entries(made)]
+    return assemble(patch, bone, lesions, "dnurbs", options, began=began, working=working, record={"sheets": sheets})
 
 
 def fit(
@@ -235,14 +230,6 @@ def _sphere(points: NDArray[np.float64], vault: chart.RadialChart, spans: tuple[
     v, u = np.indices(away.shape).reshape(2, -1) * np.array(spans)[:, None] / (len(away) - 1)
     springs = Springs((along * away[..., None]).reshape(-1, 3), v, u, np.ones(away.size))
     return sheet.settle(springs, sheet.flat(spans), Material((0.0, 0.0, 1e-6, 1e-6, 1e-6)))[0]
-
-
-def _main_piece(piece: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """The piece of a patch that fills most of the opening; only the box around it is looked at."""
-    main, box = np.zeros(piece.shape, bool), ndimage.find_objects(piece.view(np.uint8))
-    if box:
-        main[box[0]] = fill.main_piece(piece[box[0]], opening[box[0]])
-    return main
 
 
 def _inside(vault: chart.RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:

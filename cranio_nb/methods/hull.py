@@ -28,7 +28,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
-from .. import __version__, chart, fill, lesion, surface
+from .. import chart, fill, lesion
+from ..assembly import assemble
 from ..chart import RadialChart
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
@@ -112,12 +113,10 @@ def design(
     if not patch.any():
         raise NoOpening("NothingBridged", "No slice of the opening has a rim for a hull.", "Try the hull in space.")
     tell("surface", 0.9)
-    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
-    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
-    record = {"version": __version__, "seconds": time.perf_counter() - began}
+    record = {}
     if axial:
         record["slices"] = [{"lesion": i, **entry} for i, part in enumerate(made) for entry in part.slices]
-    return Prosthesis(mesh, sides, bone.with_voxels(patch), "hull", options, record, tuple(made))
+    return assemble(patch, bone, lesions, "hull", options, began=began, working=made, record=record)
 
 
 def _in_space(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]]:

@@ -31,10 +31,11 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from .. import __version__, chart, fill, lesion, surface, symmetry
-from ..casting import extended
+from .. import chart, fill, lesion, symmetry
+from ..assembly import assemble
 from ..chart import RadialChart
 from ..errors import InputRefused
+from ..maps import extended
 from ..prosthesis import Lesion, Prosthesis
 from ..symmetry import SymmetryPlane
 from ..volume import Volume
@@ -139,15 +140,9 @@ def design(
     if not patch.any():
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
     tell("surface", 0.9)
-    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
-    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
-    record = {
-        "version": __version__,
-        "seconds": time.perf_counter() - began,
-        "symmetry": plane.record(),
-        "lesions": [{"lesion": i, "without_mirror_image": part.lost} for i, part in enumerate(made)],
-    }
-    return Prosthesis(mesh, sides, bone.with_voxels(patch), "reflection", options, record, tuple(made))
+    lost = [{"lesion": i, "without_mirror_image": part.lost} for i, part in enumerate(made)]
+    record = {"symmetry": plane.record(), "lesions": lost}
+    return assemble(patch, bone, lesions, "reflection", options, began=began, working=made, record=record)
 
 
 def _check_whole(made: list[MirroredDesign]) -> None:

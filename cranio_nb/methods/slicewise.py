@@ -20,7 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .. import __version__, balloon, chart, features, fill, lesion, rays, slicing, surface
+from .. import balloon, chart, features, fill, lesion, rays, slicing
+from ..assembly import assemble
 from ..curves import ChordFrame, GapEnds, Points, cubic, spiral
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
@@ -173,14 +174,8 @@ def design(
     if not patch.any():
         raise NoOpening("NothingBridged", "No slice of the opening could be bridged.", "Try another slicing.")
     tell("surface", 0.9)
-    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
-    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
-    record = {
-        "version": __version__,
-        "seconds": time.perf_counter() - began,
-        "slices": [_entry(i, s) for i, part in enumerate(working) for s in part.slices],
-    }
-    return Prosthesis(mesh, sides, bone.with_voxels(patch), "slicewise", options, record, tuple(working))
+    slices = [_entry(i, s) for i, part in enumerate(working) for s in part.slices]
+    return assemble(patch, bone, lesions, "slicewise", options, began=began, working=working, record={"slices": slices})
 
 
 def _axial(

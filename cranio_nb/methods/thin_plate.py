@@ -38,10 +38,11 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from .. import __version__, chart, fill, lesion, prior_file, surface, symmetry
-from ..casting import extended
+from .. import chart, fill, lesion, prior_file, symmetry
+from ..assembly import assemble
 from ..chart import RadialChart
 from ..errors import InputRefused, NoOpening
+from ..maps import extended
 from ..prior import Prior, expect
 from ..prosthesis import Lesion, Prosthesis
 from ..symmetry import SymmetryPlane
@@ -141,12 +142,8 @@ def design(
     if not patch.any():
         raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
     tell("surface", 0.8)
-    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
-    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
-    record = {"version": __version__, "seconds": time.perf_counter() - began, "symmetry": found}
-    if learned is not None:
-        record["prior_skulls"] = len(learned.radii)
-    return Prosthesis(mesh, sides, bone.with_voxels(patch), "thin-plate", options, record, tuple(plates))
+    record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
+    return assemble(patch, bone, lesions, "thin-plate", options, began=began, working=plates, record=record)
 
 
 def bend(

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -29,7 +29,8 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 from skimage.measure import find_contours
 
-from .. import __version__, chart, fill, lesion, membrane, solid, surface, tetrahedra
+from .. import chart, fill, lesion, membrane, solid, tetrahedra
+from ..assembly import assemble
 from ..errors import InputRefused, NoOpening
 from ..membrane import Loop, Membrane
 from ..mesh import Mesh
@@ -111,8 +112,7 @@ def design(
     guides = [find_guides(chart.look(bone, one), n_guides) for one in lesions]
     made = design_from_guides(bone, lesions, guides, smooth=smooth, progress=progress)
     options = {"n_guides": n_guides, "smooth": smooth}
-    record = made.record | {"seconds": time.perf_counter() - began}
-    return Prosthesis(made.mesh, made.sides, made.patch, made.method, options, record, made.working)
+    return replace(made, parameters=options, record=made.record | {"seconds": time.perf_counter() - began})
 
 
 def design_from_guides(
@@ -149,15 +149,9 @@ def design_from_guides(
     if not patch.any():
         raise NoOpening("NothingFilled", "Nothing of the opening could be filled.", "Place guiding points on its rim.")
     tell("surface", 0.9)
-    mesh = surface.extract(bone.with_voxels(patch), smooth=smooth)
-    sides = surface.face_sides(mesh, bone, lesions[0].head_centre)
     options = {"guides": [np.asarray(points).tolist() for points in guides], "smooth": smooth}
-    record = {
-        "version": __version__,
-        "seconds": time.perf_counter() - began,
-        "fills": [_entry(side) for one in working for side in (one.outer, one.inner)],
-    }
-    return Prosthesis(mesh, sides, bone.with_voxels(patch), "you", options, record, tuple(working))
+    fills = [_entry(side) for one in working for side in (one.outer, one.inner)]
+    return assemble(patch, bone, lesions, "you", options, began=began, working=working, record={"fills": fills})
 
 
 def find_guides(vault: chart.RadialChart, n_guides: int) -> NDArray[np.float64]:

@@ -105,8 +105,8 @@ def bent_plate(bone: Volume, lesion: Lesion, truth: Prosthesis | None = None) ->
 def plate_of(scene: Scene, second: float, third: float, mirror: float) -> Array:
     """Outer radii of the plate in the hole and beside it, shape (M, M), mm; nan elsewhere."""
     vault = scene.vault
-    lengths = {"second": second, "third": third, "likeness": mirror}
-    return thin_plate.bend(vault.outer, vault.hole, vault.mm, like=scene.mirrored, **lengths)
+    like = scene.mirrored
+    return thin_plate.bend(vault.outer, vault.hole, vault.mm, like=like, second=second, third=third, likeness=mirror)
 
 
 def _plate_view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
