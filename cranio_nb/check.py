@@ -110,7 +110,8 @@ def _say(task: Exercise, cases: list[tuple[Any, ...]], found: list[Any], errors:
             return sentence
     if np.isinf(worst):
         return f"The answer does not have the right form: {task.form}."
-    return f"Not yet: off by up to {worst:.2g} {task.unit}, where {task.tolerance:.2g} {task.unit} is allowed."
+    unit = f" {task.unit}" if task.unit else ""
+    return f"Not yet: off by up to {worst:.2g}{unit}, where {task.tolerance:.2g}{unit} is allowed."
 
 
 def _error(task: Exercise, value: Any, wanted: Any) -> float:

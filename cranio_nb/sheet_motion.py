@@ -125,7 +125,8 @@ def relax(
     setting, dynamics
         What acts on it.
     tol : float
-        Rest is when no control point moves farther than this in a step.
+        Rest is when no control point moves farther than this in a step, nor would under the forces that are left: a
+        heavy sheet is slow at first and where it turns back.
     max_iter : int
         Steps at most.
     iter_callback : callable, optional
@@ -133,7 +134,8 @@ def relax(
     """
     for _ in range(max_iter):
         motion = step(motion, setting, dynamics)
-        motion = replace(motion, converged=motion.moved <= tol)
+        rests = motion.moved <= tol and (motion.moved == 0 or _left(motion.sheet, setting, dynamics) <= tol)
+        motion = replace(motion, converged=rests)
         if iter_callback is not None:
             iter_callback(motion)
         if motion.converged:
@@ -166,6 +168,14 @@ def step(motion: Motion, setting: Setting, dynamics: Dynamics) -> Motion:
                 return Motion(new, speed, energy, moved, motion.n_iter + 1)
         velocity, dt = np.zeros_like(velocity), dt / 2
     return replace(motion, moved=0.0, n_iter=motion.n_iter + 1)
+
+
+def _left(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
+    """Farthest way of a control point to where elastic forces and springs are even."""
+    _, elastic, force = _forces(sheet, setting, dynamics)
+    change = spsolve(sparse.csc_array(elastic), force, permc_spec="MMD_AT_PLUS_A")
+    even = _with_coordinates(sheet, _coordinates(sheet, dynamics.free_weights) + change, dynamics.free_weights)
+    return float(np.linalg.norm(even.control - sheet.control, axis=-1).max())
 
 
 def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:

@@ -174,6 +174,14 @@ def test_a_frozen_sheet_comes_to_rest_where_one_solve_puts_it(wild, setting, mas
     assert again.n_iter == 1 and again.moved < 1e-9  # rest is a fixed point
 
 
+@pytest.mark.parametrize(("mass", "damping"), [(1e6, 1.0), (0.0, 1e6)])
+def test_a_sheet_that_is_only_slow_is_not_at_rest(wild, setting, mass, damping):
+    dynamics = Dynamics(mass=mass, damping=damping)
+    still = sheet_motion.start(Sheet(wild.control, np.ones(SHAPE)), setting, dynamics)
+    first = sheet_motion.relax(still, setting, dynamics, tol=1e-2, max_iter=1)
+    assert 0 < first.moved < 1e-2 and not first.converged
+
+
 def test_free_weights_find_a_place_of_less_energy_that_is_a_least_one(setting):
     dynamics = Dynamics(free_weights=True, hold=0.1)
     rest, _ = sheet.settle(setting.springs, setting.natural, MATERIAL)

@@ -128,6 +128,10 @@ PLATES = {
                 lambda f, known, order, strength: _bridge(f, known, order, strength**2),
                 "The strength is already a factor of the energy: do not square it.",
             ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order, strength ** (2 * order)),
+                "The strength is already the whole factor of the energy: do not raise it to 2 order.",
+            ),
             (_straight, "A straight bridge: it leaves the rim with a kink and smooths nothing."),
         ),
         (

@@ -77,6 +77,10 @@ RIVALS = {
                 "The plane passes through the points themselves: it lies half-way between the two of a pair.",
             ),
             (
+                lambda a, b: (_plane(a, b)[0], (a + b).mean(axis=0)),
+                "The point is twice as far out: half-way between the two of a pair is (a + b) / 2.",
+            ),
+            (
                 lambda a, b: (np.array([1.0, 0.0, 0.0]), (a + b).mean(axis=0) / 2),
                 "This takes x for the normal; the head leans: the normal runs from one point of a pair to the other.",
             ),

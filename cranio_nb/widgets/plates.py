@@ -235,7 +235,7 @@ def _sheet_view(scene: Scene, way: Way, step: int) -> View:
     _draw_net(canvas, way, now.sheet)
     _draw_cut(canvas, way, now.sheet)
     _draw_energy(canvas, way, min(step, last))
-    state = "at rest" if now is way.motions[-1] and now.moved <= _TOL else "not at rest"
+    state = "at rest" if now.converged else "not at rest"
     line = f"Step {min(step, last)} of {last}, {state}: energy {now.energy:.0f} mm4"
     line += f", moved {now.moved:.2f} mm at most" if now.n_iter else ""
     hole = scene.vault.hole

@@ -76,7 +76,8 @@ classroom.picture(
 # <summary>Answer</summary>
 #
 # From about 42 mm on. The depth grows with the *square* of the diameter (D^2 / (8 R) for small holes). So the same hull
-# that is useless here is fine for a burr hole:
+# that is useless here, 72 mm across, is fine for a burr hole of 15 mm. (The side of a head is flatter than a sphere of
+# 75 mm, and its rim is not plane: here the hull lies 3.5 mm too deep at most, not 9.)
 #
 # </details>
 
@@ -112,23 +113,30 @@ print(f"residual {plane.residual:.2f} mm (median)")
 mirror = widgets.symmetry_plane(bone, openings[0])
 mirror
 
+# %% tags=["nbval-check-output"]
+for turn, lean, shift in ((3, 0, 0), (0, 3, 0), (0, 0, 1)):
+    print(mirror.set(turn=turn, lean=lean, shift=shift).view.line)
+
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
 # The median residual rises from 0.17 mm to 1.26 mm for the shift, to 1.13 mm for the turn and to 0.43 mm for the lean.
-# A plane that is off by 1 mm puts the image off by 2 mm: a mirror doubles its errors. Turning a
+# A plane that is off by 1 mm puts the image off by 2 mm: a mirror doubles its errors. The residual is measured to the
+# surface, so it sees all 2 mm only where the skull faces left or right; the median is 1.26 mm. Turning a
 # ball costs nothing; seen from above the head is an oval, from the front its vault is rounder, so a turn costs more than a
-# lean. At the hole itself nothing can tell you: it is white in the map.
+# lean. At the hole itself nothing can tell you: the map is white there, and at the
+# hole's partner on the other side.
 #
 # </details>
 #
 # No head is like its mirror image. Let us make ours lopsided: the sound half 4 % wider. The hole, and the truth in it,
-# stay what they were. (The patient's right is at the small column numbers.)
+# stay what they were. (The hole is on the patient's left; the right is at the small column numbers.)
 
 # %% tags=["nbval-check-output"]
 cols = np.arange(bone.shape[2])
 middle = bone.to_voxel(plane.point)[2]
+# each column of the right half shows what lay 1 / 1.04 times as far from the middle
 source = np.where(cols < middle, middle + (cols - middle) / 1.04, cols)
 lopsided = bone.with_voxels(bone.voxels[:, :, np.rint(source).astype(int)])
 copies = {}
@@ -166,6 +174,8 @@ for name in ("our head", "lopsided"):
 # Then a user picks **guiding points** on the rim, and what lies between them is closed by the surface of least area, like
 # soap film. The original is not available to us in full; this is made in its spirit, and finds the points by itself.
 #
+# Neighbouring guiding points are joined by the shortest way over the mesh.
+#
 # **Predict, then move, then explain.** You may place more guiding points. How much closer to the truth does the fill come
 # with 24 than with 12? And how few are enough?
 #
@@ -180,7 +190,8 @@ film
 # <summary>Answer</summary>
 #
 # By next to nothing: 2.53 mm on average with 24 points, 2.54 mm with 12, 2.61 mm with 3. With 4 it happens to be 2.78 mm
-# (7.8 mm at most), as the shortest way between two points leaves the rim somewhere. The points only say where the rim is. What
+# (7.8 mm at most), as the shortest way between two points leaves the rim somewhere: three can be enough, four and five are
+# unlucky, and from six on their number does not matter. The points only say where the rim is. What
 # is wrong is not the rim but what is *not asked*: that the fill leaves the rim in the direction of the bone.
 #
 # </details>
@@ -189,19 +200,18 @@ film
 # average (exercise 8.2). That is the **planar bias**. Here:
 
 # %% tags=["nbval-check-output"]
-print(f"h is about {film.view.line.split(', ')[-1]}")
-row = tables.PAPER_DISTANCES["You et al."]
-print(f"the paper's You: mean {row.mean} voxels, max {row.max}: ratio {row.mean / row.max:.2f}")
 flat = you.design(bone, openings)
-row = measure.table3(flat, true, bone)["outer"]
-print(
-    f"here:            mean {row.mean:.2f} voxels, max {row.max:.2f}: "
-    f"ratio {row.mean / row.max:.2f}"
-)
+columns = {"the paper's You": tables.PAPER_DISTANCES["You et al."]}
+columns["here"] = measure.table3(flat, true, bone)["outer"]
+for name, row in columns.items():
+    print(
+        f"{name:15}: mean {row.mean:.2f} voxels, max {row.max:.2f}: ratio {row.mean / row.max:.2f}"
+    )
 
 # %% [markdown]
-# The paper's You column has just this ratio. So its largest distance of 6.06 voxels may well be the height of the cap
-# that was missing, and the mean is what geometry makes of it.
+# Nearly the same ratio, a half. So the paper's largest distance of 6.06 voxels may well be the height of the cap that was
+# missing, and the mean is what geometry makes of it. (A voxel is 0.9 mm here. The panel above measures along rays from
+# inside the head, and reaches 5.1 mm; Table 3 takes the nearest point, so its 4.82 voxels, 4.3 mm, are fewer.)
 #
 # ## 4. Side by side
 #
@@ -209,7 +219,7 @@ print(
 # reflection itself can be a row.
 
 # %% tags=["nbval-check-output"]
-rivals = {"hull": sheet, "You et al.": flat, "reflection": copies["our head", False]}
+rivals = {"hull": sheet, "You et al.": flat, "reflection": copies["our head", True]}
 rivals["slice method"] = slicewise.design(bone, openings)
 print("                outer mean   max   inner mean   max    Dice  HD95 (mm)")
 for name, made in rivals.items():
@@ -257,8 +267,8 @@ reflection.design(frontal)
 # %% [markdown]
 # ## Exercises
 #
-# **Exercise 8.1.** The symmetry plane from pairs. `a` and `b` (n, 3) are points and their partners on the other side of
-# the head. Return the plane's unit normal and a point on it. (Lesson 07 mirrored at a plane; this is the way back.)
+# **Exercise 8.1.** The symmetry plane from pairs. `a` (n, 3) are points on one side of the head and `b` (n, 3) their
+# partners on the other. Return the plane's unit normal and a point on it. (Lesson 07 mirrored at a plane; this is the way back.)
 
 
 # %% tags=["solution"]
@@ -297,8 +307,8 @@ alt = (
 classroom.picture(fig, alt, f"a = 35 mm, h = 6 mm: {mean_depth(35, 6):.2f} mm")
 
 # %% [markdown]
-# **Exercise 8.3.** A lid for an open ring. Lesson 05 dropped the brain's place as the biggest region; where the ring is
-# open, the lid hangs together with it. `bone` is the bone of a slice, `inner` the pixels along its inner edge (both
+# **Exercise 8.3.** A lid for an open ring. The hull of a whole slice without its bone is the lid *and* the brain's place, in
+# one piece where the ring is open. A second hull, of the inner edge, takes the brain's place away. `bone` is the bone of a slice, `inner` the pixels along its inner edge (both
 # masks). Return the hull of the bone, without the hull of the inner edge, without the bone. (`convex_hull_image` is
 # imported.)
 
