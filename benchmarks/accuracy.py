@@ -12,6 +12,7 @@ import argparse
 import os
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from scipy import ndimage
 import data_synth
 from cranio_nb import evaluate, fill, lesion, surface
 from cranio_nb.errors import CranioError
-from cranio_nb.methods import slicewise
+from cranio_nb.methods import slicewise, thin_plate
 from cranio_nb.prosthesis import DistanceStats, Lesion, Prosthesis
 from cranio_nb.readers import read_ct
 from cranio_nb.run import design_for
@@ -122,18 +123,24 @@ def skullfix_case(case: Path, options: dict[str, Any] | None) -> dict[str, Any]:
     return scored(case.name, bone, truth, slicewise.paper_options(bone) if options is None else options)
 
 
-def scored(name: str, bone: Volume, truth: Volume, options: dict[str, Any]) -> dict[str, Any]:
+def scored(
+    name: str,
+    bone: Volume,
+    truth: Volume,
+    options: dict[str, Any],
+    design: Callable[..., Prosthesis] = slicewise.design,
+) -> dict[str, Any]:
     """One row: the scores, the share of slices that were not bridged by themselves, the time."""
     began = time.perf_counter()
     try:
-        made = slicewise.design(bone, **options)
+        made = design(bone, **options)
     except CranioError as error:
         return {"name": name, "failed": error.code}
     seconds = time.perf_counter() - began
     score = evaluate.score(made.patch, truth, bone)
-    slices = [s["status"] for s in made.record["slices"]]
-    why = Counter(s["reason"] for s in made.record["slices"] if s["status"] in ("carried", "skipped"))
-    lost = sum(why.values()) / len(slices)
+    slices = made.record.get("slices", [])
+    why = Counter(s["reason"] for s in slices if s["status"] in ("carried", "skipped"))
+    lost = sum(why.values()) / max(len(slices), 1)
     return {"name": name, "score": score, "lost": lost, "seconds": seconds, "why": why}
 
 
@@ -158,15 +165,17 @@ def print_scores(label: str, rows: list[dict[str, Any]]) -> None:
 def dryskull(folder: Path) -> None:
     ct, report = read_ct(folder / "dicom/dryskull_multiseries")
     print("\n== Dry skull (real CT):", next(f.message for f in report.findings if f.code == "SeriesChosen"))
-    rows = []
+    rows: dict[str, list[dict[str, Any]]] = {"slicewise": [], "thin-plate": []}
     for defect in ("temporal", "frontal", "vertex"):
         for seed in (1, 2, 3):
             case = data_synth.cut_case(ct.voxels, ct.affine, defect, seed, is_mask=False)
             bone, truth = segment(ct.with_voxels(case.hu)), ct.with_voxels(case.implant)
-            row = scored(f"{defect[:7]} {seed}", bone, truth, {})
-            rows.append(row | {"thickness": mean_thickness(truth)})
-    print_scores("virtual craniectomies", rows)
-    print("   thickness of the cut bone, mm:", ", ".join(f"{r['name']} {r['thickness']:.1f}" for r in rows))
+            thickness = {"thickness": mean_thickness(truth)}
+            for method, design in (("slicewise", slicewise.design), ("thin-plate", thin_plate.design)):
+                rows[method].append(scored(f"{defect[:7]} {seed}", bone, truth, {}, design) | thickness)
+    for method, own in rows.items():
+        print_scores(f"virtual craniectomies, {method}", own)
+    print("   thickness of the cut bone, mm:", ", ".join(f"{r['name']} {r['thickness']:.1f}" for r in own))
 
 
 def mean_thickness(implant: Volume) -> float:
