@@ -1,6 +1,7 @@
 """The plate on closed forms: what it reproduces, what it weighs, what it leaves alone; and the design around it."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -156,3 +157,12 @@ def test_the_working_holds_a_plate_for_each_lesion(made, skull):
     assert len(made.working) == 1 and isinstance(made.patch, Volume)
     plate = made.working[0]
     np.testing.assert_array_equal(np.isfinite(plate.outer), plate.chart.hole)
+
+
+def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
+    found = symmetry.find(skull("unilateral"), made.working[0].chart.eye)
+    for residual, used in ((1.2, True), (1.4, False)):
+        monkeypatch.setattr(symmetry, "find", lambda *_, r=residual: replace(found, residual=r))
+        plate = thin_plate.design(skull("unilateral"))
+        assert (plate.working[0].mirrored is not None) is used
+        assert ("unused" in plate.record["symmetry"]) is not used

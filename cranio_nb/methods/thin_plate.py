@@ -15,8 +15,9 @@ the plate is stiffer and heeds them less.
 The second order pulls smoothed bone towards spheres, the third towards quadrics, so that it carries the rim's
 curvature into the hole, but also the rim's bumps; both together err less than either. The last term asks the plate to
 be curved as the other side is; it knows nothing of where the other side lies, so an asymmetric head and a plane that
-is a little off leave no step at the rim. The lengths a, b, c (mm) say over what distance bone is smoothed; across the
-hole only their ratios matter. The weights w and v drop bone that does not belong to the vault, ridges, vessels and
+is a little off leave no step at the rim. It is left out where the mirrored skull lies more than 1.3 mm off the skull:
+then the plane is wrong, or the head has none. The lengths a, b, c (mm) say over what distance bone is smoothed; across
+the hole only their ratios matter. The weights w and v drop bone that does not belong to the vault, ridges, vessels and
 sinuses (Cauchy's weights, iterated). Each surface is one sparse symmetric system, solved directly.
 
 Source: thin plates in cranioplasty are Carr, Fright and Beatson 1997 (doi 10.1109/42.563663): radial basis functions
@@ -54,6 +55,7 @@ _NODES = 2.0  # mm between the nodes of the plate
 _REACH = 25.0  # mm of bone beside the hole that the plate lies on
 _HOLDS = (0.01, 0.1, 1.0, 1.0)  # how firmly the data hold in each round of weighting
 _LEAST_SPREAD = 0.05  # mm: residuals below this are no outliers
+_LOPSIDED = 1.3  # mm of median residual from which a symmetry plane is not one: its mirror image did harm
 _SPRING = 1e-4  # s: draws the middle of a hole of 75 mm half the way to what is expected, (64 a^4 / s)^(1/4) = R
 _RAYS_APART = 3.0  # mm between the rays on which skulls were learned: what is finer there is noise
 _FAINT = 1e-10  # weight that holds the plate to the mean radius where bone holds it nowhere
@@ -252,6 +254,8 @@ def _symmetry(bone: Volume, one: Lesion) -> tuple[SymmetryPlane | None, dict[str
         plane = symmetry.find(bone, one.head_centre)
     except InputRefused as refused:
         return None, {"unused": refused.message}
+    if plane.residual > _LOPSIDED:
+        return None, plane.record() | {"unused": f"The mirrored skull lies {plane.residual:.1f} mm off the skull."}
     return plane, plane.record()
 
 
