@@ -204,9 +204,8 @@ flat = you.design(bone, openings)
 columns = {"the paper's You": tables.PAPER_DISTANCES["You et al."]}
 columns["here"] = measure.table3(flat, true, bone)["outer"]
 for name, row in columns.items():
-    print(
-        f"{name:15}: mean {row.mean:.2f} voxels, max {row.max:.2f}: ratio {row.mean / row.max:.2f}"
-    )
+    print(f"{name:15}: mean {row.mean:.2f} voxels, max {row.max:.2f}", end="")
+    print(f": ratio {row.mean / row.max:.2f}")
 
 # %% [markdown]
 # Nearly the same ratio, a half. So the paper's largest distance of 6.06 voxels may well be the height of the cap that was
