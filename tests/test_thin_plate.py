@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
-from cranio_nb import symmetry
+from cranio_nb import chart, symmetry
 from cranio_nb.errors import InputRefused
 from cranio_nb.methods import thin_plate
 from cranio_nb.methods.thin_plate import bend
@@ -166,3 +167,15 @@ def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
         plate = thin_plate.design(skull("unilateral"))
         assert (plate.working[0].mirrored is not None) is used
         assert ("unused" in plate.record["symmetry"]) is not used
+
+
+def test_a_blurred_rim_does_not_pull_the_plate_down(skull, made):
+    (plate,) = made.working
+    beside = ndimage.distance_transform_edt(~plate.chart.hole) * plate.chart.mm
+    grazed = (beside > 0) & (beside <= 0.8)
+    assert grazed.any()
+    low = replace(plate.chart, outer=np.where(grazed, plate.chart.outer - 5.0, plate.chart.outer))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(chart, "look", lambda bone, one: low)
+        again = thin_plate.design(skull("unilateral"))
+    np.testing.assert_allclose(again.working[0].outer, plate.outer, atol=1e-6)

@@ -53,6 +53,7 @@ Array = NDArray[np.float64]
 
 _NODES = 2.0  # mm between the nodes of the plate
 _REACH = 25.0  # mm of bone beside the hole that the plate lies on
+_RIM = 0.8  # mm beside the hole that are not fitted: rays graze a rim, and a scan blurs it
 _HOLDS = (0.01, 0.1, 1.0, 1.0)  # how firmly the data hold in each round of weighting
 _LEAST_SPREAD = 0.05  # mm: residuals below this are no outliers
 _LOPSIDED = 1.3  # mm of median residual from which a symmetry plane is not one: its mirror image did harm
@@ -268,9 +269,10 @@ def _plate(
     expected = None if learned is None else _expected(bone, vault, learned)
     nodes = max(1, round(_NODES / vault.mm))
     hole = thinned(vault.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
+    rim = ndimage.distance_transform_edt(~vault.hole) * vault.mm <= _RIM
     radii = []
     for i, radius in enumerate((vault.outer, vault.inner)):
-        known = np.where(vault.hole, np.nan, radius)
+        known = np.where(rim, np.nan, radius)
         like, likely = (None if maps is None else thinned(maps[i], nodes) for maps in (mirrored, expected))
         plate = bend(thinned(known, nodes), hole, vault.mm * nodes, like=like, expected=likely, **lengths)
         radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))

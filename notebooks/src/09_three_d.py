@@ -199,7 +199,7 @@ for a, b, c in trials:
 #
 # </details>
 #
-# Measured on the ten cases of SkullFix (Kodym et al. 2021): Dice 0.933 with the thin plate, 0.943 with the prior. No prior
+# Measured on the ten cases of SkullFix (Kodym et al. 2021): Dice 0.935 with the thin plate, 0.943 with the prior. No prior
 # is shipped: learn one from scans that you may use. It is never needed.
 #
 # ## 5. A sheet that moves
@@ -286,7 +286,7 @@ classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone a
 #
 # For the large one. Across the hole of the class all three are within a voxel (Dice 0.959 to 0.969), and slices do as
 # well as the plate. Across 100 mm the slices have nothing to go by in the middle (0.872); the plate knows the curvature of
-# the other side (0.939). That helps here more than in life: the phantom is nearly symmetric. The elastic sheet bulges, as its
+# the other side (0.928). That helps here more than in life: the phantom is nearly symmetric. The elastic sheet bulges, as its
 # natural shape is a sphere and the side of a head is flatter than that (0.672): a good guess for a small hole may be a bad
 # one for a large hole.
 #
