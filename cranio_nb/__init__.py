@@ -6,7 +6,8 @@ The rooms, from the ground up; imports go down only, and rooms on one floor do n
 
 ========  ====================================================================================================
 Nouns     `volume` voxels and where they stand; `curves` plane curves, gap ends, the chord frame; `mesh`
-          triangles; `prosthesis` lesion, prosthesis, a row of Table 3; `errors` one sentence and a remedy
+          triangles; `maps` numbers over rays; `prosthesis` lesion, prosthesis, a row of Table 3; `errors` one sentence
+          and a remedy
 Stages    `readers` scan -> CT; `segment` CT -> bone; `lesion` bone -> openings; `features` slice -> gap ends;
           `balloon` gap ends -> curves; `fill` curves -> patch; `surface` patch -> mesh; `evaluate` patch and
           truth -> measures; `fit` and `implant` prosthesis -> what a workshop asks; `export` -> files
