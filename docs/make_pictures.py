@@ -43,9 +43,9 @@ def middle_slice(result: RunResult) -> Figure:
     return plot.slice_figure(sliced, one, result.bone, result.prosthesis.patch)
 
 
-def side_by_side(figures: list[Figure]) -> Figure:
+def side_by_side(parts: list[Figure]) -> Figure:
     """Finished figures in a row, each in the middle of its height."""
-    pictures = [pixels(figure) for figure in figures]
+    pictures = [pixels(figure) for figure in parts]
     height = max(len(picture) for picture in pictures)
     row = np.concatenate([centred(picture, height) for picture in pictures], axis=1)
     figure, ax = plot.new_figure(row.shape[1] / plot.DPI, height / plot.DPI)

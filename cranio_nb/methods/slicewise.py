@@ -20,11 +20,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .. import balloon, chart, features, fill, lesion, rays, slicing
+from .. import balloon, chart, features, fill, lesion, slicing
 from ..assembly import assemble
 from ..curves import ChordFrame, GapEnds, Points, cubic, spiral
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
+from ..rays import RayProfile, fit_rims, share_tangents
 from ..volume import Volume
 
 _TANGENT_ERROR, _TURN_ERROR = 0.05, 0.3  # radians of tangent error on sound bone, and per radian its rim bends
@@ -230,7 +231,7 @@ def _weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) ->
     return np.where(total > 0, (weights * np.nan_to_num(values)).sum(axis=0) / np.where(total > 0, total, 1.0), np.nan)
 
 
-def _on_rays(results: list[SliceResult], boundary: int, profile: rays.RayProfile) -> tuple[NDArray, NDArray]:
+def _on_rays(results: list[SliceResult], boundary: int, profile: RayProfile) -> tuple[NDArray, NDArray]:
     """Radius of a fan's curves along the rays of its slices, and its weight; shape (P, K), nan and 0 elsewhere.
 
     A tangent that is wrong by an angle e at the end moves a cubic by e L t (1 - t)^2, so a point is the surer the
@@ -267,10 +268,10 @@ def _by_skeleton(slices: NDArray[np.bool_], opening: NDArray[np.bool_], skip: fl
     return results
 
 
-def _by_rays(profile: rays.RayProfile, skip: float, reach: float, coupling: float) -> list[SliceResult]:
+def _by_rays(profile: RayProfile, skip: float, reach: float, coupling: float) -> list[SliceResult]:
     """Gap ends of every slice of a fan, tangents shared between neighbours."""
-    rims = rays.fit_rims(profile, skip=skip, reach=reach)
-    tangents = rays.share_tangents(rims.tangents, coupling)
+    rims = fit_rims(profile, skip=skip, reach=reach)
+    tangents = share_tangents(rims.tangents, coupling)
     turns = ndimage.median_filter(np.nan_to_num(rims.turns, nan=1.0), size=(2 * round(coupling) + 1, 1, 1))
     results = []
     for plane in np.flatnonzero(profile.missing.any(axis=1)):
