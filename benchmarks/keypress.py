@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "browser"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "helpers"))
 from browser_lab import ARGS, browser_path, run_all, running_lab, write_notebook
 from playwright.sync_api import Locator, sync_playwright
 

@@ -4,7 +4,8 @@
 
 The skull is the phantom `data_synth` makes, sampled on 512 x 512 x 240 voxels of 0.45 x 0.45 x 0.71 mm; beside it the
 first case of skullfix/cases, where CRANIO_NB_DATA names the folder of real scans. Each design runs alone, on at most
-two cores, in a process of its own (see `cranio_nb.trial`). Finding bone and openings comes before and is timed apart.
+two cores, in a process of its own (see `cranio_nb.pipeline.trial`). Finding bone and openings comes before and is
+timed apart.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from pathlib import Path
 
 from skullfix import load
 
-from cranio_nb.lesion import find
-from cranio_nb.segment import segment
-from cranio_nb.trial import Contender, attempt_apart, contenders
+from cranio_nb.pipeline.trial import Contender, attempt_apart, contenders
+from cranio_nb.stages.segmentation import segment
+from cranio_nb.vault.opening_search import find
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
 

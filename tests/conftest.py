@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cranio_nb.lesion import find
 from cranio_nb.prosthesis import Lesion
+from cranio_nb.vault.opening_search import find
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case
 

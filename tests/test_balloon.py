@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cranio_nb.balloon import PAPER_PRESSURE, curvature_pressure, inflate, tangent_pressure
 from cranio_nb.curves import cubic, spiral
+from cranio_nb.stages.deformable_model import PAPER_PRESSURE, curvature_pressure, inflate, tangent_pressure
 
 FAR = 1e6  # a chord so long that every normal stands on it
 STIFF = {"dt": 1e4, "tol": 1e-9, "max_iter": 400}  # large steps: straight to the equilibrium

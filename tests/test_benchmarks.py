@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cranio_nb.compare import MEASURES
 from cranio_nb.errors import InputRefused
-from cranio_nb.trial import Contender, Trial, attempt
+from cranio_nb.pipeline.compare import MEASURES
+from cranio_nb.pipeline.trial import Contender, Trial, attempt
 from cranio_nb.volume import Volume
 from data_synth import DEFECTS, phantom_case
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from cranio_nb.chart import look, voxelise
 from cranio_nb.prosthesis import Lesion
+from cranio_nb.vault.radius_map import look, voxelise
 from cranio_nb.volume import Volume
 
 INNER, OUTER, HALF = 72.0, 80.0, 20.0  # mm, mm, degrees

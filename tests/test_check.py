@@ -9,10 +9,10 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 from skimage.morphology import convex_hull_image
 
-from cranio_nb import check, lessons
-from cranio_nb.balloon import PAPER_PRESSURE, inflate, tangent_pressure
 from cranio_nb.curves import cubic, spiral
-from cranio_nb.exercises import EXERCISES
+from cranio_nb.stages.deformable_model import PAPER_PRESSURE, inflate, tangent_pressure
+from cranio_nb.teaching import build, check
+from cranio_nb.teaching.exercises import EXERCISES
 
 SOURCES = sorted((Path(__file__).parents[1] / "notebooks" / "src").glob("*.py"))
 LIBRARY = {
@@ -32,11 +32,11 @@ def shipped(stub):
     """Exercise -> the function of its solution cell, or of its stub in the student's copy."""
     found = {}
     for source in SOURCES:
-        cells = lessons.read(source).cells
+        cells = build.read(source).cells
         for cell in cells:
-            if "solution" in lessons.tags(cell):
-                number = lessons._next_number(cells, cell)
-                text = lessons._stub(cell.source, number) if stub else cell.source
+            if "solution" in build.tags(cell):
+                number = build._next_number(cells, cell)
+                text = build._stub(cell.source, number) if stub else cell.source
                 found[number] = function(text)
     return found
 

@@ -14,9 +14,10 @@ import pytest
 import trimesh
 from click.testing import CliRunner, Result
 
-from cranio_nb import outputs, run
-from cranio_nb.cli import main
-from cranio_nb.export import write_nifti
+from cranio_nb.cli.main import main
+from cranio_nb.output import design_folder
+from cranio_nb.output.files import write_nifti
+from cranio_nb.pipeline import run
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case, write_dicom
@@ -287,7 +288,7 @@ def test_a_failure_while_writing_leaves_nothing(home, paper, tmp_path, monkeypat
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
-    monkeypatch.setattr(outputs.export, "write_text", full_disk)
+    monkeypatch.setattr(design_folder.export, "write_text", full_disk)
     assert_refused(cranio("design", home / "ct", "--out", tmp_path / "new" / "out"), 5, "No space left")
     assert list(tmp_path.iterdir()) == []
     (tmp_path / "old").mkdir()
@@ -385,8 +386,8 @@ def test_every_command_has_help_with_examples(command):
 
 def test_import_and_help_load_nothing_heavy():
     code = (
-        "import sys, cranio_nb, cranio_nb.cli\n"
-        "try: cranio_nb.cli.main(['design', '--help'])\n"
+        "import sys, cranio_nb.cli.main\n"
+        "try: cranio_nb.cli.main.main(['design', '--help'])\n"
         "except SystemExit: pass\n"
         "heavy = {'matplotlib', 'vtkmodules', 'pyvista', 'ipywidgets', 'scipy', 'skimage'} & set(sys.modules)\n"
         "sys.exit(','.join(heavy) or 0)"

@@ -13,15 +13,18 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from cranio_nb import catalogue, compare, compare_page, plot, trial
-from cranio_nb.cli import main
+from cranio_nb.cli.main import main
+from cranio_nb.drawing import figures
 from cranio_nb.errors import CannotWrite, InputRefused, NoOpening
-from cranio_nb.export import write_nifti
-from cranio_nb.outputs import staged
+from cranio_nb.methods import catalogue
+from cranio_nb.output import comparison_page
+from cranio_nb.output.design_folder import staged
+from cranio_nb.output.files import write_nifti
+from cranio_nb.pipeline import compare, trial
+from cranio_nb.pipeline.run import prepare
+from cranio_nb.pipeline.trial import Contender, attempt, attempt_apart, contenders
 from cranio_nb.prosthesis import Prosthesis
-from cranio_nb.run import prepare
-from cranio_nb.surface import extract, face_sides
-from cranio_nb.trial import Contender, attempt, attempt_apart, contenders
+from cranio_nb.stages.surface_reconstruction import extract, face_sides
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -106,7 +109,7 @@ def blind(home):
 
 @pytest.fixture(scope="module")
 def html(found):
-    return compare_page.comparison_page(found)
+    return comparison_page.comparison_page(found)
 
 
 class Page(HTMLParser):
@@ -252,16 +255,16 @@ class TestPage:
 
     def test_all_maps_and_the_bar_have_the_scale_of_the_comparison(self, found, monkeypatch):
         tops = []
-        scale = plot.colour_scale
-        monkeypatch.setattr(plot, "colour_scale", lambda top: tops.append(top) or scale(top))
-        compare_page.comparison_page(found)
+        scale = figures.colour_scale
+        monkeypatch.setattr(figures, "colour_scale", lambda top: tops.append(top) or scale(top))
+        comparison_page.comparison_page(found)
         assert len(tops) == 5 and set(tops) == {found.top}
 
     def test_all_pictures_of_a_view_are_seen_from_one_side(self, found, monkeypatch):
         seen = []
-        draw = plot.view_figure
-        monkeypatch.setattr(plot, "view_figure", lambda *a, **k: seen.append((*a[2], k["px"])) or draw(*a, **k))
-        compare_page.comparison_page(found)
+        draw = figures.view_figure
+        monkeypatch.setattr(figures, "view_figure", lambda *a, **k: seen.append((*a[2], k["px"])) or draw(*a, **k))
+        comparison_page.comparison_page(found)
         assert len(seen) == 6 and len(set(seen[:3])) == 1 and len(set(seen[3:])) == 1
 
     def test_heads_for_little_room_tell_columns_apart(self):
@@ -269,20 +272,20 @@ class TestPage:
         assert len(set(heads)) == len(heads) and max(map(len, heads)) <= 5
 
     def test_best_is_what_is_printed_best(self, found):
-        accuracy, implant = compare_page.tables(found)
+        accuracy, implant = comparison_page.tables(found)
         assert accuracy["best"]["dice"] == 1 and accuracy["best"]["hd95"] == 0
         assert accuracy["best"]["volume_ratio"] is None and implant["best"]["overlap"] is None
 
     def test_without_a_truth(self, blind):
-        page = Page(compare_page.comparison_page(blind))
+        page = Page(comparison_page.comparison_page(blind))
         assert len(page.all("img")) == 2 * 2 + 2 + 1 + 2
         assert len(page.all("table")) == 2 and "the surface of moved" in " ".join(page.words)
 
 
 class TestFiles:
     def test_csv_and_json_hold_the_same_rows(self, found):
-        table = list(csv.DictReader(io.StringIO(compare_page.comparison_csv(found))))
-        record = json.loads(json.dumps(compare_page.export.jsonable(compare_page.comparison_record(found))))
+        table = list(csv.DictReader(io.StringIO(comparison_page.comparison_csv(found))))
+        record = json.loads(json.dumps(comparison_page.export.jsonable(comparison_page.comparison_record(found))))
         assert [row["name"] for row in table] == [m["name"] for m in record["methods"]] == list(STAND_INS)
         for row, told in zip(table, record["methods"], strict=True):
             assert row["status"] == told["status"] and row["message"] == told["message"]
@@ -296,11 +299,11 @@ class TestFiles:
             raise OSError(28, "No space left on device")
 
         with staged(tmp_path / "good") as part:
-            compare_page.write_comparison(found, part)
-        assert {p.name for p in (tmp_path / "good").iterdir()} == set(compare_page.FILES)
-        monkeypatch.setattr(compare_page, "comparison_page", full_disk)
+            comparison_page.write_comparison(found, part)
+        assert {p.name for p in (tmp_path / "good").iterdir()} == set(comparison_page.FILES)
+        monkeypatch.setattr(comparison_page, "comparison_page", full_disk)
         with pytest.raises(CannotWrite), staged(tmp_path / "new" / "out") as part:
-            compare_page.write_comparison(found, part)
+            comparison_page.write_comparison(found, part)
         assert [p.name for p in tmp_path.iterdir()] == ["good"]
 
 
@@ -309,7 +312,7 @@ class TestCommand:
         arguments = ("--truth", home / "truth.nii.gz", "--method", "slicewise:paper", "--out", tmp_path / "out")
         result = cranio("compare", home / "skull.nii.gz", *arguments)
         assert result.exit_code == 0, result.output
-        assert {p.name for p in (tmp_path / "out").iterdir()} == set(compare_page.FILES)
+        assert {p.name for p in (tmp_path / "out").iterdir()} == set(comparison_page.FILES)
         assert "slicewise:paper" in result.stdout and "Border DSC" in result.stdout and result.stderr == ""
         text = (tmp_path / "out" / "comparison.html").read_text()
         assert str(home) not in text

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from cranio_nb.crossings import crossings
 from cranio_nb.errors import InputRefused
-from cranio_nb.evaluate import (
+from cranio_nb.evaluation.rim_gap import distance_to_voxels, rim_gap
+from cranio_nb.evaluation.scores import (
     assd,
     border_dice,
     dice,
@@ -24,11 +24,11 @@ from cranio_nb.evaluate import (
     thickness_rmse,
     volume_ratio,
 )
-from cranio_nb.fit import distance_to_voxels, rim_gap
-from cranio_nb.implant import DENSITIES, clearance, implant_data, to_trim, undercut
+from cranio_nb.geometry.closest_point import nearest
+from cranio_nb.geometry.mesh_check import check_mesh
+from cranio_nb.geometry.self_intersection import crossings
+from cranio_nb.implant.workshop import DENSITIES, clearance, implant_data, to_trim, undercut
 from cranio_nb.mesh import Mesh
-from cranio_nb.mesh_check import check_mesh
-from cranio_nb.nearest import nearest
 from cranio_nb.prosthesis import INNER, OUTER, Prosthesis
 from cranio_nb.volume import Volume
 

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cranio_nb import export
 from cranio_nb.errors import CannotWrite
-from cranio_nb.export import MESH_FORMATS, jsonable, output_folder, validate, write_json, write_mesh, write_nifti
 from cranio_nb.mesh import Mesh
-from cranio_nb.surface import extract
+from cranio_nb.output import files
+from cranio_nb.output.files import MESH_FORMATS, jsonable, output_folder, validate, write_json, write_mesh, write_nifti
+from cranio_nb.stages.surface_reconstruction import extract
 from cranio_nb.volume import AxisOrder, Volume, canonical_order
 
 
@@ -120,7 +120,7 @@ def test_a_file_that_reads_back_otherwise_is_not_kept(tmp_path, monkeypatch):
     path = tmp_path / "implant.ply"
     write_mesh(ball(), path)
     before = path.read_bytes()
-    monkeypatch.setattr(export, "_trimesh", _squeezed(export._trimesh))
+    monkeypatch.setattr(files, "_trimesh", _squeezed(files._trimesh))
     with pytest.raises(CannotWrite, match="another one"):
         write_mesh(ball(), path)
     assert path.read_bytes() == before
@@ -216,7 +216,7 @@ def test_json_is_strict_and_holds_dataclasses_and_arrays(tmp_path):
 
 
 def test_text_is_utf8(tmp_path):
-    export.write_text(tmp_path / "a.txt", "Schädel µm\n")
+    files.write_text(tmp_path / "a.txt", "Schädel µm\n")
     assert (tmp_path / "a.txt").read_bytes().decode("utf-8") == "Schädel µm\n"
 
 
@@ -238,7 +238,7 @@ class TestFoldersAndFailures:
         def refuse(*args, **kwargs):
             raise PermissionError(errno.EACCES, "Permission denied", str(tmp_path))
 
-        monkeypatch.setattr(export.tempfile, "TemporaryFile", refuse)
+        monkeypatch.setattr(files.tempfile, "TemporaryFile", refuse)
         with pytest.raises(CannotWrite) as refusal:
             output_folder(tmp_path / "results")
         assert refusal.value.code == "CannotWrite" and refusal.value.exit_code == 5
@@ -250,23 +250,23 @@ class TestFoldersAndFailures:
 
         monkeypatch.setattr(Path, "open", refuse)
         with pytest.raises(CannotWrite) as refusal:
-            export.write_text(tmp_path / "a.txt", "text")
+            files.write_text(tmp_path / "a.txt", "text")
         assert "a.txt" in str(refusal.value) and "Read-only file system" in str(refusal.value)
         assert str(tmp_path) not in str(refusal.value)
 
     def test_a_full_disk_keeps_the_old_file_and_leaves_nothing(self, tmp_path, monkeypatch):
-        export.write_text(tmp_path / "a.txt", "old")
+        files.write_text(tmp_path / "a.txt", "old")
 
         def full(handle):
             raise OSError(errno.ENOSPC, "No space left on device")
 
         monkeypatch.setattr(os, "fsync", full)
         with pytest.raises(CannotWrite, match="No space left"):
-            export.write_text(tmp_path / "a.txt", "new")
+            files.write_text(tmp_path / "a.txt", "new")
         assert [p.name for p in tmp_path.iterdir()] == ["a.txt"]
         assert (tmp_path / "a.txt").read_text() == "old"
 
-    @pytest.mark.parametrize("write", [lambda p: export.write_text(p, ""), lambda p: write_mesh(ball(), p)])
+    @pytest.mark.parametrize("write", [lambda p: files.write_text(p, ""), lambda p: write_mesh(ball(), p)])
     def test_a_folder_that_is_not_there_is_refused(self, tmp_path, write):
         with pytest.raises(CannotWrite) as refusal:
             write(tmp_path / "nowhere" / "a.stl")

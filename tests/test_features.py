@@ -5,7 +5,14 @@ import pytest
 from skimage.morphology import skeletonize
 
 from cranio_nb.errors import CranioError
-from cranio_nb.features import SliceProblem, fit_line, gap_ends, longest_path, slice_features, used_points
+from cranio_nb.stages.feature_extraction import (
+    SliceProblem,
+    fit_line,
+    gap_ends,
+    longest_path,
+    slice_features,
+    used_points,
+)
 
 CENTRE = np.array([250.0, 250.0])
 INNER, OUTER = 182.0, 202.0

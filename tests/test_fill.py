@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from cranio_nb.fill import between, main_piece, partial_loss, patch
+from cranio_nb.stages.prosthesis_volume import between, main_piece, partial_loss, patch
 
 INNER, OUTER = 60.0, 75.0
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import NoOpening
-from cranio_nb.fill import solid_piece
 from cranio_nb.methods import hull
 from cranio_nb.prosthesis import Lesion
+from cranio_nb.stages.prosthesis_volume import solid_piece
 from cranio_nb.volume import Volume
 
 INNER, OUTER, HALF = 72.0, 80.0, 22.0  # mm, mm, degrees

@@ -8,49 +8,50 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from cranio_nb import doctor, lab
-from cranio_nb.cli import main
+from cranio_nb.cli import doctor
+from cranio_nb.cli.main import main
 from cranio_nb.errors import InputRefused
+from cranio_nb.teaching.lab import start
 
 
 @pytest.fixture
 def lessons(tmp_path):
     (tmp_path / "notebooks").mkdir()
-    (tmp_path / "notebooks" / lab.TOUR).write_text("{}")
+    (tmp_path / "notebooks" / start.TOUR).write_text("{}")
     return tmp_path
 
 
 def test_the_lessons_are_found_from_above_and_from_within(lessons, monkeypatch):
     here = (lessons / "notebooks").resolve()
-    assert lab.lessons_folder(lessons) == lab.lessons_folder(lessons / "notebooks") == here
+    assert start.lessons_folder(lessons) == start.lessons_folder(lessons / "notebooks") == here
     for place in (lessons, here):
         monkeypatch.chdir(place)
-        assert lab.lessons_folder() == here
+        assert start.lessons_folder() == here
 
 
 def test_a_folder_without_lessons_is_refused(tmp_path):
-    with pytest.raises(InputRefused, match=lab.TOUR):
-        lab.lessons_folder(tmp_path)
+    with pytest.raises(InputRefused, match=start.TOUR):
+        start.lessons_folder(tmp_path)
     done = CliRunner().invoke(main, ["lab", str(tmp_path)])
     assert done.exit_code == 3 and done.stderr.count("\n") == 1
 
 
 def test_jupyterlab_reads_the_settings_that_come_with_the_package(lessons):
     pytest.importorskip("jupyterlab")
-    command = lab.lab_command(lessons, browser=False, port=9000)
+    command = start.lab_command(lessons, browser=False, port=9000)
     assert "--no-browser" in command and "--ServerApp.port=9000" in command
     done = subprocess.run([*command, "--show-config-json"], capture_output=True, text=True, timeout=60)
     config = json.loads(done.stdout)
-    assert config["LabApp"]["app_settings_dir"] == str(lab.SETTINGS)
-    assert config["LabApp"]["default_url"].endswith(lab.TOUR)
-    settings = json.loads((lab.SETTINGS / "overrides.json").read_text())
+    assert config["LabApp"]["app_settings_dir"] == str(start.SETTINGS)
+    assert config["LabApp"]["default_url"].endswith(start.TOUR)
+    settings = json.loads((start.SETTINGS / "overrides.json").read_text())
     assert settings["@jupyterlab/apputils-extension:kernels-settings"] == {"commsOverSubshells": "disabled"}
 
 
 def test_the_settings_are_ones_that_jupyterlab_knows():
     """Each key of the overrides is a schema of the installed JupyterLab, and each entry one of its properties."""
     pytest.importorskip("jupyterlab")
-    overrides = json.loads((lab.SETTINGS / "overrides.json").read_text())
+    overrides = json.loads((start.SETTINGS / "overrides.json").read_text())
     for plugin, entries in overrides.items():
         package, _, name = plugin.partition(":")
         schema = f"{sys.prefix}/share/jupyter/lab/schemas/{package}/{name}.json"
@@ -60,9 +61,9 @@ def test_the_settings_are_ones_that_jupyterlab_knows():
 
 def test_vtk_is_told_to_look_for_no_display(monkeypatch):
     monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
-    assert lab.lab_environment()["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkOSOpenGLRenderWindow"
+    assert start.lab_environment()["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkOSOpenGLRenderWindow"
     monkeypatch.setenv("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    assert lab.lab_environment()["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
+    assert start.lab_environment()["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkEGLRenderWindow"
 
 
 @pytest.mark.parametrize(("mark", "name"), [("JUPYTERHUB_USER", "JupyterHub"), ("VSCODE_PID", "VS Code")])
@@ -76,7 +77,7 @@ def test_opening_the_lab_is_not_loaded_with_the_command_line():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.split() == ["False"] * 2
 
 
-BINDER = Path(lab.__file__).parents[1] / "binder"
+BINDER = Path(__file__).parents[1] / "binder"
 
 
 @pytest.mark.skipif(not BINDER.is_dir(), reason="only a checkout has Binder's files")

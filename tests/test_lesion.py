@@ -7,7 +7,7 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused, NoOpening
-from cranio_nb.lesion import find, head_centre, look
+from cranio_nb.vault.opening_search import find, head_centre, look
 from cranio_nb.volume import Volume
 from data_synth import DEFECTS, scan
 

@@ -9,11 +9,11 @@ import nbformat
 import pytest
 from click.testing import CliRunner
 
-from cranio_nb import lessons
-from cranio_nb.cli import main
+from cranio_nb.cli.main import main
 from cranio_nb.errors import InputRefused
-from cranio_nb.exercises import EXERCISES
-from cranio_nb.lesson_pages import write_pages
+from cranio_nb.teaching import build
+from cranio_nb.teaching.exercises import EXERCISES
+from cranio_nb.teaching.web_pages import write_pages
 
 FOLDER = Path(__file__).parents[1] / "notebooks"
 SOURCES = sorted((FOLDER / "src").glob("*.py"))
@@ -75,7 +75,7 @@ def code(notebook):
 
 
 def tagged(notebook, tag):
-    return [cell for cell in code(notebook) if tag in lessons.tags(cell)]
+    return [cell for cell in code(notebook) if tag in build.tags(cell)]
 
 
 def pictures(notebook):
@@ -90,12 +90,12 @@ class TestShippedLessons:
 
     @pytest.mark.parametrize("source", SOURCES, ids=NAMES)
     def test_are_made_from_their_texts(self, source):
-        text = lessons.read(source)
+        text = build.read(source)
         made = nbformat.read(FOLDER / f"{source.stem}.ipynb", as_version=4)
-        known = [(cell.id, cell.source, lessons.tags(cell)) for cell in made.cells]
-        assert known == [(cell.id, cell.source, lessons.tags(cell)) for cell in text.cells]
+        known = [(cell.id, cell.source, build.tags(cell)) for cell in made.cells]
+        assert known == [(cell.id, cell.source, build.tags(cell)) for cell in text.cells]
         copy = nbformat.read(FOLDER / "exercises" / f"{source.stem}.ipynb", as_version=4)
-        assert nbformat.writes(lessons.exercise_copy(made)) == nbformat.writes(copy)
+        assert nbformat.writes(build.exercise_copy(made)) == nbformat.writes(copy)
 
     def test_nothing_that_is_compared_is_silently_skipped(self, lesson):
         counts = [cell.execution_count for cell in code(lesson)]
@@ -195,9 +195,9 @@ class TestCommand:
         assert {path: path.read_bytes() for path in small.rglob("*.ipynb")} == made
 
     def test_grades_what_is_handed_in(self, small):
-        lessons.build(small)
-        assert lessons.points(small / "90_small.ipynb") == {"4.1": (3, 3)}
-        assert lessons.points(small / "exercises" / "90_small.ipynb") == {"4.1": (0, 3)}
+        build.build(small)
+        assert build.points(small / "90_small.ipynb") == {"4.1": (3, 3)}
+        assert build.points(small / "exercises" / "90_small.ipynb") == {"4.1": (0, 3)}
 
     @pytest.mark.parametrize(
         ("old", "new"),
@@ -213,13 +213,13 @@ class TestCommand:
         source = small / "src" / "90_small.py"
         source.write_text(SMALL.replace(old, new))
         with pytest.raises(InputRefused) as caught:
-            lessons.build(small)
+            build.build(small)
         assert caught.value.code == "BadLesson"
         assert not list(small.rglob("*.ipynb"))
 
     def test_refuses_a_folder_without_lessons(self, tmp_path):
         with pytest.raises(InputRefused, match="No lesson texts"):
-            lessons.build(tmp_path)
+            build.build(tmp_path)
 
 
 def test_pages_hold_every_picture_with_its_description_and_need_no_kernel(tmp_path):

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from cranio_nb import evaluate
 from cranio_nb.errors import NoOpening
-from cranio_nb.lesion import find
-from cranio_nb.mesh_check import check_mesh
-from cranio_nb.methods import dnurbs, hull, reflection, slicewise, thin_plate, you
+from cranio_nb.evaluation import scores
+from cranio_nb.geometry.mesh_check import check_mesh
+from cranio_nb.methods import hull, reflection, slicewise, thin_plate
+from cranio_nb.methods.dnurbs import method as dnurbs
+from cranio_nb.methods.you import method as you
 from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
+from cranio_nb.vault.opening_search import find
 from cranio_nb.volume import Volume, same_grid
 from data_synth import phantom_case, scan
 
@@ -128,7 +130,7 @@ def test_the_mesh_is_a_solid_with_the_patchs_volume(defect, designed):
 @pytest.mark.parametrize("defect", DEFECTS)
 def test_the_patch_agrees_with_the_missing_bone_as_well_as_claimed(defect, method, designed, phantom):
     truth = Volume(phantom(defect).implant, phantom(defect).affine)
-    assert evaluate.dice(designed(defect).patch, truth) > method.dice[DEFECTS.index(defect)]
+    assert scores.dice(designed(defect).patch, truth) > method.dice[DEFECTS.index(defect)]
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
@@ -189,7 +191,7 @@ def test_two_holes_get_the_union_of_their_patches(method):
     np.testing.assert_array_equal(both.patch.voxels, single[0] | single[1])
     assert check_mesh(both.mesh).n_parts == 2
     truth = Volume(case.implant, case.affine)
-    assert evaluate.dice(both.patch, truth) > method.dice[1]
+    assert scores.dice(both.patch, truth) > method.dice[1]
 
 
 def test_a_wider_hole_gets_no_smaller_patch(method, designed, phantom):
@@ -212,7 +214,7 @@ def test_the_error_falls_with_the_voxels(method, designed, phantom):
     _, bone, implant = scan(case.head, affine, tuple(2 * n for n in case.bone.shape))
     fine = run(method, Volume(bone, affine)).patch
     errors = [
-        evaluate.assd(patch, Volume(truth, patch.affine))
+        scores.assd(patch, Volume(truth, patch.affine))
         for patch, truth in ((designed("round").patch, case.implant), (fine, implant))
     ]
     assert errors[1] < 0.75 * errors[0]

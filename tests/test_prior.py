@@ -7,15 +7,17 @@ import pytest
 from click.testing import CliRunner
 from scipy import ndimage
 
-from cranio_nb import casting, headframe, prior, prior_study, vaultmap
-from cranio_nb import chart as radial
-from cranio_nb.cli import main
+from cranio_nb.cli.main import main
 from cranio_nb.errors import CannotWrite, InputRefused
-from cranio_nb.export import write_nifti
-from cranio_nb.lesion import find
 from cranio_nb.methods import thin_plate
-from cranio_nb.prior import Expected
-from cranio_nb.prior_file import VERSION, load, save
+from cranio_nb.output.files import write_nifti
+from cranio_nb.prior import alignment, shape_prior, vault_radii
+from cranio_nb.prior.file import VERSION, load, save
+from cranio_nb.prior.shape_prior import Expected
+from cranio_nb.prior import study as prior_study
+from cranio_nb.vault import radius_map as radial
+from cranio_nb.vault import ray_casting
+from cranio_nb.vault.opening_search import find
 from cranio_nb.volume import Volume
 
 N_HEADS = 4
@@ -31,14 +33,14 @@ def intact(phantom):
 
 @pytest.fixture(scope="module")
 def learned(intact):
-    return prior.learn(intact(seed) for seed in range(1, 1 + N_HEADS))
+    return shape_prior.learn(intact(seed) for seed in range(1, 1 + N_HEADS))
 
 
 @pytest.fixture(scope="module")
 def hole():
     """Rays through a round hole on the left."""
     towards = np.array([0.7, 0.3, 0.65])
-    return vaultmap.vault_rays() @ towards > np.cos(0.4) * np.linalg.norm(towards)
+    return vault_radii.vault_rays() @ towards > np.cos(0.4) * np.linalg.norm(towards)
 
 
 def mirror_image(bone):
@@ -51,8 +53,8 @@ def masked(radii, unknown):
 
 
 def test_the_sphere_is_symmetric_and_even():
-    rays = headframe.sphere(3)
-    twins = headframe.twins(rays)
+    rays = alignment.sphere(3)
+    twins = alignment.twins(rays)
     assert len(rays) == 642
     np.testing.assert_allclose(rays[twins], rays * [-1, 1, 1], atol=1e-12)
     np.testing.assert_array_equal(twins[twins], np.arange(len(rays)))
@@ -60,42 +62,42 @@ def test_the_sphere_is_symmetric_and_even():
 
 
 def test_a_moved_and_stretched_skull_is_laid_back(intact):
-    cloud = headframe.see(intact(1))
-    turn = headframe._rotation(np.array([0.15, 0.03, -0.04]))
+    cloud = alignment.see(intact(1))
+    turn = alignment._rotation(np.array([0.15, 0.03, -0.04]))
     matrix, shift = 1.08 * turn @ np.diag([0.97, 1.0, 1.03]), np.array([3.0, -4.0, 5.0])
-    frame = headframe.stand(cloud.posed(matrix, shift), cloud)
+    frame = alignment.stand(cloud.posed(matrix, shift), cloud)
     back = cloud.axes.T @ frame.matrix
     np.testing.assert_allclose(back, matrix, atol=5e-3)
     np.testing.assert_allclose(cloud.axes.T @ (frame.origin - cloud.eye), shift, atol=0.3)
 
 
 def test_a_hole_hardly_moves_a_skull(intact, skull, learned):
-    whole, open_ = (headframe.stand(headframe.see(bone), learned.mean) for bone in (intact(0), skull("large", 0)))
-    other = headframe.stand(headframe.see(intact(0)), learned.mean)
+    whole, open_ = (alignment.stand(alignment.see(bone), learned.mean) for bone in (intact(0), skull("large", 0)))
+    other = alignment.stand(alignment.see(intact(0)), learned.mean)
     np.testing.assert_array_equal(other.matrix, whole.matrix)
     assert np.linalg.norm(open_.origin - whole.origin) < 2.0
     np.testing.assert_allclose(open_.matrix, whole.matrix, atol=0.04)
 
 
 def test_learned_heads_stand_symmetric_and_of_mean_size(learned):
-    assert learned.radii.shape == (N_HEADS, 2, len(vaultmap.vault_rays()))
+    assert learned.radii.shape == (N_HEADS, 2, len(vault_radii.vault_rays()))
     assert np.isfinite(learned.radii).all() and (learned.radii[:, 0] > learned.radii[:, 1]).all()
     middle = learned.samples.mean(axis=0)
-    np.testing.assert_allclose(vaultmap.mirrored(middle), middle, atol=1e-4)
+    np.testing.assert_allclose(vault_radii.mirrored(middle), middle, atol=1e-4)
     assert 60 < middle[0].mean() < 110
 
 
 def test_known_bone_is_reproduced(learned, hole, intact):
     truth = learned.radii[0]
-    given = prior.condition(learned.subset([1, 2, 3]), masked(truth, hole), np.ones(len(hole), bool))
-    beside = ~hole & (vaultmap.distance(hole) < 10)
+    given = shape_prior.condition(learned.subset([1, 2, 3]), masked(truth, hole), np.ones(len(hole), bool))
+    beside = ~hole & (vault_radii.distance(hole) < 10)
     assert np.abs(given - truth)[:, beside].mean() < 0.25  # the noise of the tiny heads' voxels
 
 
 def test_a_skull_that_was_seen_is_foretold_better(learned, hole):
     truth = learned.radii[0]
     off = [
-        np.abs(prior.condition(learned.subset(chosen), masked(truth, hole), hole) - truth[:, hole]).mean()
+        np.abs(shape_prior.condition(learned.subset(chosen), masked(truth, hole), hole) - truth[:, hole]).mean()
         for chosen in ([1, 2, 3], [0, 1, 2, 3])
     ]
     assert off[1] < 0.6 * off[0]
@@ -103,40 +105,42 @@ def test_a_skull_that_was_seen_is_foretold_better(learned, hole):
 
 def test_a_larger_head_is_foretold_larger(learned, hole):
     truth, others = 1.03 * learned.radii[0], learned.subset([1, 2, 3])
-    foretold = prior.condition(others, masked(truth, hole), hole)
+    foretold = shape_prior.condition(others, masked(truth, hole), hole)
     plain = others.samples.mean(axis=0)[:, hole]
     assert np.abs(foretold - truth[:, hole]).mean() < 0.2 * np.abs(plain - truth[:, hole]).mean()
 
 
 def test_without_known_bone_the_mean_head_is_foretold(learned, hole):
     nothing = np.full(learned.radii.shape[1:], np.nan)
-    np.testing.assert_allclose(prior.condition(learned, nothing, hole), learned.samples.mean(axis=0)[:, hole])
+    np.testing.assert_allclose(shape_prior.condition(learned, nothing, hole), learned.samples.mean(axis=0)[:, hole])
 
 
 def test_where_all_skulls_agree_the_smooth_kernel_speaks(learned, hole):
-    alike = prior.Prior(learned.mean, np.repeat(learned.samples.mean(axis=0, keepdims=True), 3, axis=0).astype("f4"))
+    alike = shape_prior.Prior(
+        learned.mean, np.repeat(learned.samples.mean(axis=0, keepdims=True), 3, axis=0).astype("f4")
+    )
     swollen = alike.radii[0] + 1.0
-    foretold = prior.condition(alike, masked(swollen, hole), hole) - alike.radii[0][:, hole]
-    rim = vaultmap.distance(~hole)[hole] < 6
+    foretold = shape_prior.condition(alike, masked(swollen, hole), hole) - alike.radii[0][:, hole]
+    rim = vault_radii.distance(~hole)[hole] < 6
     assert (foretold > 0.8).all() and foretold[:, rim].mean() > 0.95
 
 
 def test_the_mirror_image_is_foretold_as_the_mirror_image(learned, hole):
     truth, others = learned.radii[0], learned.subset([1, 2, 3])
-    twin = headframe.twins(vaultmap.vault_rays())
+    twin = alignment.twins(vault_radii.vault_rays())
     plain = np.zeros(truth.shape)
-    plain[:, hole] = prior.condition(others, masked(truth, hole), hole)
+    plain[:, hole] = shape_prior.condition(others, masked(truth, hole), hole)
     turned = np.zeros(truth.shape)
-    turned[:, hole[twin]] = prior.condition(others, masked(truth, hole)[:, twin], hole[twin])
-    np.testing.assert_allclose(vaultmap.mirrored(turned), plain, atol=0.01)  # mm: ties between neighbours
+    turned[:, hole[twin]] = shape_prior.condition(others, masked(truth, hole)[:, twin], hole[twin])
+    np.testing.assert_allclose(vault_radii.mirrored(turned), plain, atol=0.01)  # mm: ties between neighbours
 
 
 def test_a_hole_in_a_head_is_foretold_on_its_chart(learned, phantom, skull):
     case, bone = phantom("round", 0), skull("round", 0)
     chart = radial.look(bone, find(bone)[0])
-    found = prior.expect(learned, bone, chart)
+    found = shape_prior.expect(learned, bone, chart)
     whole = Volume(case.bone | case.implant, case.affine)
-    inner, outer = casting.cast(whole, chart.eye, chart.directions, np.nan_to_num(found.outer, nan=80.0))
+    inner, outer = ray_casting.cast(whole, chart.eye, chart.directions, np.nan_to_num(found.outer, nan=80.0))
     assert np.isfinite(found.outer[chart.hole]).all()
     assert np.abs(found.outer - outer)[chart.hole].mean() < 0.8
     assert np.abs(found.inner - inner)[chart.hole].mean() < 0.8
@@ -148,7 +152,7 @@ def test_the_mirrored_head_is_foretold_mirrored(learned, skull):
     bone = skull("round", 0)
     twin = mirror_image(bone)
     charts = [radial.look(one, find(one)[0]) for one in (bone, twin)]
-    found = [prior.expect(learned, one, chart) for one, chart in zip((bone, twin), charts, strict=True)]
+    found = [shape_prior.expect(learned, one, chart) for one, chart in zip((bone, twin), charts, strict=True)]
     middles = [np.nanmean(one.outer[chart.hole]) for one, chart in zip(found, charts, strict=True)]
     assert middles[0] == pytest.approx(middles[1], abs=0.3)
     assert np.linalg.norm(found[0].frame.origin * [-1, 1, 1] - found[1].frame.origin) < 1.0
@@ -197,14 +201,14 @@ def test_a_file_that_cannot_be_written_leaves_nothing(learned, tmp_path):
 
 
 def test_an_open_skull_is_not_learned_from(skull, intact):
-    prior.check_intact(intact(0))
+    shape_prior.check_intact(intact(0))
     with pytest.raises(InputRefused, match="open or outside"):
-        prior.check_intact(skull("large", 0))
+        shape_prior.check_intact(skull("large", 0))
 
 
 def test_one_skull_is_too_few(intact):
     with pytest.raises(InputRefused, match="needs 2 intact skulls"):
-        prior.learn([intact(0)])
+        shape_prior.learn([intact(0)])
 
 
 def test_the_error_falls_with_the_number_of_skulls(learned):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cranio_nb.rays import RayProfile, fit_rims, share_tangents
+from cranio_nb.vault.rims import RayProfile, fit_rims, share_tangents
 
 CENTRE = np.array([200.0, 190.0])
 STEP = 0.005

@@ -24,7 +24,7 @@ from pydicom.uid import (
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom_rescale import check_rescale
+from cranio_nb.readers.dicom.rescale import check_rescale
 from cranio_nb.volume import Volume, same_grid
 
 SMALL = (9, 22, 26)

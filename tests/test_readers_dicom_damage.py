@@ -148,12 +148,12 @@ def test_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pytes
     def closed(path: object) -> None:
         raise PermissionError(13, "Permission denied", str(path))
 
-    monkeypatch.setattr("cranio_nb.readers.dicom_files.os.scandir", closed)
+    monkeypatch.setattr("cranio_nb.readers.dicom.files.os.scandir", closed)
     assert refusal(save(tmp_path / "scan", series(head()))).code == "PermissionDenied"
 
 
 def test_too_many_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cranio_nb.readers.dicom_files.MAX_FILES", 20)
+    monkeypatch.setattr("cranio_nb.readers.dicom.files.MAX_FILES", 20)
     assert refusal(save(tmp_path / "scan", series(head()))).code == "LimitExceeded"
 
 
@@ -162,7 +162,7 @@ def test_missing_decoder_names_the_package(tmp_path: Path, monkeypatch: pytest.M
     for ds in datasets:
         ds.compress(JPEGLSLossless, encoding_plugin="pyjpegls")
     folder = save(tmp_path / "scan", datasets)
-    monkeypatch.setattr("cranio_nb.readers.dicom_codecs.find_spec", lambda name: None)
+    monkeypatch.setattr("cranio_nb.readers.dicom.codecs.find_spec", lambda name: None)
     error = refusal(folder)
     assert error.code == "UnsupportedTransferSyntax" and "pyjpegls" in error.remedy
 

@@ -8,9 +8,9 @@ from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom_headers import slice_headers
-from cranio_nb.readers.dicom_pixels import check_format, stored_pixels, to_hu
-from cranio_nb.readers.dicom_scan import scan
+from cranio_nb.readers.dicom.headers import slice_headers
+from cranio_nb.readers.dicom.pixels import check_format, stored_pixels, to_hu
+from cranio_nb.readers.dicom.scan import scan
 from cranio_nb.volume import Volume
 
 pytestmark = pytest.mark.real

@@ -8,9 +8,9 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.lesion import find
-from cranio_nb.mesh_check import check_mesh
+from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.methods import reflection
+from cranio_nb.vault.opening_search import find
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
 from data_synth.head import SHAPE_TERMS, THICKNESS_TERMS

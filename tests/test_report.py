@@ -7,10 +7,10 @@ from html.parser import HTMLParser
 
 import pytest
 
-from cranio_nb import report
+from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, balloon_ranges, measure_opening, place, telling_slices
+from cranio_nb.output import design_page
+from cranio_nb.pipeline.run import RunResult, run_design
 from cranio_nb.readers import Finding
-from cranio_nb.run import RunResult, run_design
-from cranio_nb.tables import PAPER_BALLOONS, balloon_ranges, measure_opening, place, telling_slices
 from data_synth import phantom_case
 from data_synth.files import write_case
 
@@ -47,7 +47,7 @@ def result(tmp_path_factory) -> RunResult:
 
 @pytest.fixture(scope="module")
 def html(result) -> str:
-    return report.report_page(result)
+    return design_page.report_page(result)
 
 
 @pytest.fixture(scope="module")
@@ -71,7 +71,7 @@ def test_page_is_self_contained(html, page):
 
 def test_every_picture_is_a_png_with_words(page):
     pictures = page.all("img")
-    assert len(pictures) == 3 + report.N_SLICES + 3
+    assert len(pictures) == 3 + design_page.N_SLICES + 3
     for attrs in pictures:
         assert base64.b64decode(attrs["src"].split(",")[1]).startswith(b"\x89PNG")
         assert len(attrs["alt"]) > 60
@@ -103,18 +103,18 @@ def test_tables_stand_beside_the_papers(page, result):
 
 def test_own_defaults_are_not_set_beside_the_paper(result):
     own = dataclasses.replace(result, preset="default")
-    assert not any(table["paper"] or len(row) > 3 for table in report.balloon_tables(own) for row in table["rows"])
-    assert list(report.distance_table(own)) == ["Outer (voxels)", "Inner (voxels)", "Outer (mm)", "Inner (mm)"]
+    assert not any(table["paper"] or len(row) > 3 for table in design_page.balloon_tables(own) for row in table["rows"])
+    assert list(design_page.distance_table(own)) == ["Outer (voxels)", "Inner (voxels)", "Outer (mm)", "Inner (mm)"]
 
 
 def test_page_without_truth_or_slices(bare):
-    page = Page(report.report_page(bare))
+    page = Page(design_page.report_page(bare))
     assert len(page.all("img")) == 3 and "known truth" not in page.text and "balloons in numbers" not in page.text
 
 
 def test_markup_in_findings_is_shown_not_run(bare):
     evil = Finding("Evil", "warning", "<script>alert('x')</script>&\"")
-    text = report.report_page(dataclasses.replace(bare, findings=(evil,)))
+    text = design_page.report_page(dataclasses.replace(bare, findings=(evil,)))
     assert "<script" not in text and "&lt;script&gt;" in text
     assert "<script>alert('x')</script>&\"" in Page(text).text
 
@@ -144,4 +144,4 @@ def test_opening_is_measured(result):
 
 @pytest.mark.parametrize(("value", "text"), [(None, "-"), (3, "3"), (2.5, "2.50"), (True, "True"), ("x", "x")])
 def test_numbers_read_well(value, text):
-    assert report.number(value) == text
+    assert design_page.number(value) == text

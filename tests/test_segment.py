@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.segment import drop_artefacts, fill_holes, segment, threshold_hu
+from cranio_nb.stages.segmentation import drop_artefacts, fill_holes, segment, threshold_hu
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 

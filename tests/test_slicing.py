@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cranio_nb.chart import RadialChart
-from cranio_nb.slicing import axial_frames, fans, picture, profile
+from cranio_nb.vault.radius_map import RadialChart
+from cranio_nb.vault.slicing import axial_frames, fans, picture, profile
 from cranio_nb.volume import Volume
 
 STEP = np.radians(1.0)

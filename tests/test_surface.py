@@ -5,9 +5,9 @@ from hypothesis import strategies as st
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.mesh_check import check_mesh
+from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.prosthesis import INNER, OUTER, RIM
-from cranio_nb.surface import deviation, extract, face_sides
+from cranio_nb.stages.surface_reconstruction import deviation, extract, face_sides
 from cranio_nb.volume import Volume
 
 RADIUS, THICKNESS, HALF_ANGLE = 60.0, 6.0, 30.0

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from cranio_nb import symmetry
 from cranio_nb.errors import InputRefused
-from cranio_nb.lesion import head_centre
+from cranio_nb.vault import symmetry
+from cranio_nb.vault.opening_search import head_centre
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
 from data_synth.head import SHAPE_TERMS, THICKNESS_TERMS

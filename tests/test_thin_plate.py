@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from cranio_nb import chart, symmetry
 from cranio_nb.errors import InputRefused
 from cranio_nb.methods import thin_plate
 from cranio_nb.methods.thin_plate import bend
+from cranio_nb.vault import radius_map, symmetry
 from cranio_nb.volume import Volume
 
 N, MM = 41, 2.0
@@ -176,6 +176,6 @@ def test_a_blurred_rim_does_not_pull_the_plate_down(skull, made):
     assert grazed.any()
     low = replace(plate.chart, outer=np.where(grazed, plate.chart.outer - 5.0, plate.chart.outer))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(chart, "look", lambda bone, one: low)
+        patch.setattr(radius_map, "look", lambda bone, one: low)
         again = thin_plate.design(skull("unilateral"))
     np.testing.assert_allclose(again.working[0].outer, plate.outer, atol=1e-6)

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from cranio_nb import view3d
-from cranio_nb.canvas import BLUE, rgb_of
+from cranio_nb.drawing import scene3d
+from cranio_nb.drawing.canvas import BLUE, rgb_of
 from cranio_nb.errors import InputRefused
 from cranio_nb.mesh import Mesh
 
@@ -30,7 +30,7 @@ def static(monkeypatch):
 
 
 def test_a_static_scene_is_a_picture_with_words(static):
-    scene = view3d.show(cube(40), cube(10, (30, 0, 0)), labels=["large", "small"], alt=ALT)
+    scene = scene3d.show(cube(40), cube(10, (30, 0, 0)), labels=["large", "small"], alt=ALT)
     data, metadata = scene._repr_mimebundle_()
     assert set(data) == {"image/png", "text/plain"} and metadata["image/png"]["alt"] == ALT
     assert data["text/plain"] == "3-D scene: large, small (24 triangles)."
@@ -38,7 +38,7 @@ def test_a_static_scene_is_a_picture_with_words(static):
 
 
 def test_a_face_covers_as_many_pixels_as_its_size_says(static):
-    scene = view3d.show(cube(40), alt=ALT, towards=(0, -1, 0))
+    scene = scene3d.show(cube(40), alt=ALT, towards=(0, -1, 0))
     blue = np.array(rgb_of(BLUE), float)
     share = scene.picture @ blue / np.linalg.norm(scene.picture, axis=2).clip(1) / np.linalg.norm(blue)
     rows, cols = np.nonzero(share > 0.995)
@@ -46,13 +46,13 @@ def test_a_face_covers_as_many_pixels_as_its_size_says(static):
 
 
 def test_the_last_mesh_is_seen_in_front(static):
-    scene = view3d.show(cube(40), cube(10, (30, 0, 0)), alt=ALT)
+    scene = scene3d.show(cube(40), cube(10, (30, 0, 0)), alt=ALT)
     assert scene.towards @ [1, 0, 0] > 0.9
 
 
 def test_scalars_run_from_dark_to_yellow(static):
     mesh = cube(40)
-    scene = view3d.show(mesh, alt=ALT, scalars=[mesh.vertices[:, 0] + 20], towards=(0, -1, 0))
+    scene = scene3d.show(mesh, alt=ALT, scalars=[mesh.vertices[:, 0] + 20], towards=(0, -1, 0))
     body = scene.picture[150:350]
     left, right = body[:, 140].mean(axis=0), body[:, 500].mean(axis=0)
     assert left[2] > left[0] and right[0] > right[2] + 60
@@ -61,18 +61,18 @@ def test_scalars_run_from_dark_to_yellow(static):
 @pytest.mark.parametrize("wrong", [{"colours": [BLUE]}, {"labels": ["a"]}, {"scalars": [np.zeros(3), None]}])
 def test_lists_that_do_not_fit_are_refused(wrong):
     with pytest.raises(InputRefused):
-        view3d.show(cube(40), cube(10), alt=ALT, **wrong)
+        scene3d.show(cube(40), cube(10), alt=ALT, **wrong)
 
 
 def test_nothing_to_show_is_refused():
     with pytest.raises(InputRefused, match="no mesh"):
-        view3d.show(Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)), alt=ALT)
+        scene3d.show(Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)), alt=ALT)
 
 
 def test_without_pyvista_there_is_a_picture_and_a_sentence(monkeypatch):
     monkeypatch.setenv("CRANIO_NB_MODE", "widget")
-    monkeypatch.setattr(view3d, "find_spec", lambda name: None)
-    data, _ = view3d.show(cube(40), alt=ALT)._repr_mimebundle_()
+    monkeypatch.setattr(scene3d, "find_spec", lambda name: None)
+    data, _ = scene3d.show(cube(40), alt=ALT)._repr_mimebundle_()
     assert set(data) == {"image/png", "text/plain"} and "cranio-nb[view]" in data["text/plain"]
 
 
@@ -82,7 +82,7 @@ def test_a_thinned_sphere_keeps_to_its_radius(max_faces):
 
     grid = np.linalg.norm(np.mgrid[-25:26, -25:26, -25:26], axis=0)
     vertices, faces, _, _ = marching_cubes(20 - grid, 0.0)
-    mesh, carried = view3d.thinned(Mesh(vertices - 25, faces.astype(int)), vertices - 25, max_faces)
+    mesh, carried = scene3d.thinned(Mesh(vertices - 25, faces.astype(int)), vertices - 25, max_faces)
     assert 0.3 * max_faces < len(mesh.faces) <= max_faces
     cell = np.sqrt(4 * np.pi * 20**2 * 3 / max_faces)
     sag = 20 - np.linalg.norm(mesh.vertices, axis=1)

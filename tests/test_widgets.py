@@ -8,15 +8,20 @@ import pytest
 from PIL import Image
 from scipy import ndimage
 
-from cranio_nb import balloon, chart, evaluate, features, run, segment, symmetry, widgets
-from cranio_nb.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
-from cranio_nb.catalogue import check_options, default_options
 from cranio_nb.curves import ChordFrame, GapEnds, cubic
+from cranio_nb.drawing.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
 from cranio_nb.errors import InputRefused
-from cranio_nb.methods import slicewise, you
+from cranio_nb.evaluation import scores
+from cranio_nb.methods import slicewise
+from cranio_nb.methods.catalogue import check_options, default_options
+from cranio_nb.methods.you import method as you
+from cranio_nb.pipeline import run
 from cranio_nb.prosthesis import INNER, OUTER
+from cranio_nb.stages import deformable_model, feature_extraction, segmentation
+from cranio_nb.teaching import widgets
+from cranio_nb.teaching.widgets import inflation, tuning
+from cranio_nb.vault import radius_map, symmetry
 from cranio_nb.volume import Volume
-from cranio_nb.widgets import inflation, tuning
 
 
 @pytest.fixture
@@ -169,7 +174,7 @@ def test_a_grey_window_is_black_and_white_at_its_ends():
 
 def test_the_threshold_line_counts_the_bone_of_the_slice(static, ct):
     panel = widgets.threshold(ct).set(hu=700, max_hole=0, plane=25)
-    area = np.count_nonzero(segment.threshold_hu(ct.voxels[25], 700)) * np.prod(ct.spacing[1:]) / 100
+    area = np.count_nonzero(segmentation.threshold_hu(ct.voxels[25], 700)) * np.prod(ct.spacing[1:]) / 100
     assert f"{area:.1f} cm" in panel.view.line
 
 
@@ -185,8 +190,8 @@ def test_holes_filled_are_drawn_green(static):
 def test_the_features_line_counts_the_points_of_the_stage(static, skull, opening):
     bone, plane, px = skull(), middle_plane(opening), float(skull().spacing[1])
     panel = widgets.features(bone, plane, opening=opening).set(skip=5.0, reach=12.0)
-    seen = features.slice_features(bone.voxels[plane])
-    ends = features.gap_ends(seen, opening.voxels[plane], skip=5 / px, reach=12 / px)
+    seen = feature_extraction.slice_features(bone.voxels[plane])
+    ends = feature_extraction.gap_ends(seen, opening.voxels[plane], skip=5 / px, reach=12 / px)
     width = np.hypot(*np.diff(ends[0].points, axis=0)[0]) * px
     assert f"{width:.1f} mm apart" in panel.view.line
 
@@ -207,7 +212,7 @@ def test_moving_k_moves_the_balloon_as_the_stage_says(live, arch, k):
     rise = np.radians(30)
     start = cubic(100.0, rise, np.pi - rise, 21)
     slopes = np.array([[5.0, 5 * np.tan(rise)], [5.0, -5 * np.tan(rise)]])
-    curve = balloon.inflate(start, slopes, pressure=k).curve
+    curve = deformable_model.inflate(start, slopes, pressure=k).curve
     assert f"apex {curve[:, 1].max():.1f} px" in panel.view.line
     window = Window.around((0, 0, 512, 512), [48, 48], [162, 172])
     at = window.px(ChordFrame.of(arch, INSIDE).to_slice(curve))[5:-5].round().astype(int)
@@ -280,7 +285,7 @@ def test_unsmoothed_vertices_have_not_moved_and_smoothed_stay_in_their_voxel(sta
 
 def test_the_evaluation_line_counts_nodes(static, design, true):
     panel = widgets.evaluation(design, true).set(side="inner", limit=0.4)
-    distances = evaluate.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
+    distances = scores.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
     assert f"{100 * (distances <= 0.4).mean():.0f} % of the nodes lie within 0.4 mm" in panel.view.line
     assert f"max {distances.max():.2f} mm" in panel.view.line
 
@@ -294,8 +299,8 @@ def test_the_map_of_distances_shows_the_distances_of_the_nodes(design, true):
 
 def test_guiding_points_say_what_the_method_fills(static, skull, lesions, true):
     panel = widgets.guiding_points(skull(), lesions()[0], true).set(n=8)
-    made = you.fill_between(skull(), lesions()[0], you.find_guides(chart.look(skull(), lesions()[0]), 8))
-    off = evaluate.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
+    made = you.fill_between(skull(), lesions()[0], you.find_guides(radius_map.look(skull(), lesions()[0]), 8))
+    off = scores.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
     assert panel.view.line.startswith("8 guiding points: ")
     assert f"{off.mean():.2f} mm from the true surface on average, {off.max():.2f} mm at most" in panel.view.line
 
@@ -333,7 +338,7 @@ def test_a_plate_that_is_held_by_nothing_errs_most(static, skull, lesions, true)
 
 
 def test_the_hole_of_a_coarse_chart_holds_the_hole_and_nothing_far_from_it(skull, lesions):
-    fine = chart.look(skull(), lesions()[0])
+    fine = radius_map.look(skull(), lesions()[0])
     vault = widgets.plates.coarse(fine, 3)
     start = (len(fine.hole) // 2) % 3
     assert vault.hole[fine.hole[start::3, start::3]].all()
@@ -347,7 +352,7 @@ def test_panels_of_plates_need_no_truth(static, skull, lesions):
 
 
 def test_mass_and_friction_do_not_move_the_place_of_rest(skull, lesions):
-    vault = widgets.plates.coarse(chart.look(skull(), lesions()[0]), 4)
+    vault = widgets.plates.coarse(radius_map.look(skull(), lesions()[0]), 4)
     ways = [widgets.plates.relaxing(vault, 40.0, mass, damping) for mass, damping in ((0.0, 1.0), (3.0, 2.0))]
     first, second = (way.motions[-1].sheet.control for way in ways)
     assert all(way.motions[-1].converged for way in ways)
@@ -372,7 +377,7 @@ def test_the_tuner_hands_its_parameters_to_the_design_command(static, phantom, t
     case = phantom()
     bone = Volume(case.bone, case.affine)
     made = slicewise.design(bone, **panel.parameters)
-    dice = evaluate.dice(made.patch, bone.with_voxels(case.implant))
+    dice = scores.dice(made.patch, bone.with_voxels(case.implant))
     assert panel.view.line.startswith(f"DSC {dice:.3f}")
 
 
@@ -389,7 +394,7 @@ def test_a_panel_refuses_a_control_it_does_not_have(static, arch):
 def test_of_many_waiting_calls_only_the_last_is_made(live):
     import asyncio
 
-    from cranio_nb.widgets.live import Latest
+    from cranio_nb.teaching.widgets.live import Latest
 
     done, wanted = [], []
     later = Latest(lambda: done.append(wanted[-1]))

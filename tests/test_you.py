@@ -5,12 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from cranio_nb import chart, evaluate, membrane
 from cranio_nb.errors import InputRefused
+from cranio_nb.evaluation import scores
+from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.mesh import Mesh
-from cranio_nb.mesh_check import check_mesh
-from cranio_nb.methods import you
+from cranio_nb.methods.you import method as you
+from cranio_nb.methods.you.method import membrane
 from cranio_nb.prosthesis import Lesion
+from cranio_nb.vault import radius_map
 from cranio_nb.volume import Volume
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -138,13 +140,13 @@ def test_guides_in_either_sense_give_the_same_rim(dome, filling):
 
 def test_picked_guides_make_a_prosthesis(skull, lesions, phantom):
     bone, found = skull("round"), lesions("round")
-    guides = [you.find_guides(chart.look(bone, one), 9) for one in found]
+    guides = [you.find_guides(radius_map.look(bone, one), 9) for one in found]
     made = you.design_from_guides(bone, found, guides)
     assert made.parameters["guides"] == [points.tolist() for points in guides]
     json.dumps([made.parameters, made.record], allow_nan=False)
     same = you.design(bone, found, n_guides=9)
     np.testing.assert_array_equal(made.patch.voxels, same.patch.voxels)
-    assert evaluate.dice(made.patch, Volume(phantom("round").implant, bone.affine)) > 0.5
+    assert scores.dice(made.patch, Volume(phantom("round").implant, bone.affine)) > 0.5
 
 
 def test_too_few_guides_are_refused(dome):

@@ -28,12 +28,13 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
-from .. import chart, fill, lesion
-from ..assembly import assemble
-from ..chart import RadialChart
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
+from ..stages import prosthesis_volume
+from ..vault import opening_search, radius_map
+from ..vault.radius_map import RadialChart
 from ..volume import Volume
+from .assembly import assemble
 
 _RAYS = 360  # around a slice
 _ISLAND = 4.0  # mm2: smaller pieces of a slice are dropped
@@ -103,7 +104,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = lesion.find(bone) if lesions is None else lesions
+    lesions = opening_search.find(bone) if lesions is None else lesions
     made, patch = [], np.zeros(bone.shape, bool)
     for i, one in enumerate(lesions):
         tell("hull", 0.9 * i / len(lesions))
@@ -121,11 +122,11 @@ def design(
 
 def _in_space(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one lesion between the hulls of the vault's two surfaces."""
-    vault = chart.look(bone, one)
+    vault = radius_map.look(bone, one)
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
-    outer, inner = chart.thickened(vault, outer, inner)
-    piece = chart.voxelise(vault, outer, inner, bone)
-    return HullDesign(one, vault, outer, inner), fill.solid_piece(piece, one.opening, bone)
+    outer, inner = radius_map.thickened(vault, outer, inner)
+    piece = radius_map.voxelise(vault, outer, inner, bone)
+    return HullDesign(one, vault, outer, inner), prosthesis_volume.solid_piece(piece, one.opening, bone)
 
 
 def _hull_radius(vault: RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -151,7 +152,7 @@ def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[n
 
 def _by_slices(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one lesion, slice by slice along the planes of the scan."""
-    vault = chart.look(bone, one)
+    vault = radius_map.look(bone, one)
     first, end = one.planes
     px = float(bone.spacing[1:].mean())
     near = ndimage.binary_dilation(one.opening.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
@@ -163,13 +164,15 @@ def _by_slices(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]
         piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
         entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
     nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(one, vault, nothing, nothing, tuple(entries)), fill.solid_piece(piece, one.opening, bone)
+    return HullDesign(one, vault, nothing, nothing, tuple(entries)), prosthesis_volume.solid_piece(
+        piece, one.opening, bone
+    )
 
 
 def _cone(vault: RadialChart, bone: Volume) -> NDArray[np.bool_]:
     """Voxels without bone in the directions of the hole, at any depth; beside it only as deep as its rim."""
     far, deep = (np.where(vault.hole, np.nanmedian(vault.outer) + d, np.nan) for d in (_ABOVE, -_BELOW))
-    return chart.voxelise(vault, far, deep, bone)
+    return radius_map.voxelise(vault, far, deep, bone)
 
 
 def _slice(
@@ -189,7 +192,7 @@ def _slice(
     if not cone.any():
         return nothing, "outside the hole"
     if len(hits) == _RAYS:
-        return fill.partial_loss(bone, min_area=min_area, region=near) & cone, "closed ring"
+        return prosthesis_volume.partial_loss(bone, min_area=min_area, region=near) & cone, "closed ring"
     hits = hits[~rim]
     if len(hits) < _RAYS / 2:  # their hull may not hold the inside
         return nothing, "no ring of bone in this slice"

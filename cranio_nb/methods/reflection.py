@@ -31,14 +31,15 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from .. import chart, fill, lesion, symmetry
-from ..assembly import assemble
-from ..chart import RadialChart
 from ..errors import InputRefused
-from ..maps import extended
 from ..prosthesis import Lesion, Prosthesis
-from ..symmetry import SymmetryPlane
+from ..stages import prosthesis_volume
+from ..vault import opening_search, radius_map, symmetry
+from ..vault.radius_map import RadialChart
+from ..vault.ray_grid import extended
+from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
+from .assembly import assemble
 
 _TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
 _TIP = 2.0  # mm: narrower ends of a possible part are left out
@@ -123,7 +124,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = lesion.find(bone) if lesions is None else lesions
+    lesions = opening_search.find(bone) if lesions is None else lesions
     tell("symmetry", 0.1)
     plane = symmetry.find(bone, lesions[0].head_centre)
     made = []
@@ -135,8 +136,8 @@ def design(
     patch = np.zeros(bone.shape, bool)
     for part in made:
         if np.isfinite(part.outer).any():
-            piece = chart.voxelise(part.own, part.outer, part.inner, bone)
-            patch |= fill.solid_piece(piece, part.lesion.opening, bone)
+            piece = radius_map.voxelise(part.own, part.outer, part.inner, bone)
+            patch |= prosthesis_volume.solid_piece(piece, part.lesion.opening, bone)
     if not patch.any():
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
     tell("surface", 0.9)
@@ -166,15 +167,15 @@ def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
 
 def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
     """Radii of the mirror image across one hole, nan where it has none to give."""
-    own = chart.look(bone, one)
-    image = chart.along(own, plane.mirrored(bone))
+    own = radius_map.look(bone, one)
+    image = radius_map.along(own, plane.mirrored(bone))
     known = np.isfinite(image.outer) & ~image.hole
     outer, inner = (extended(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
     if fit_rim:
         finest = max(_SMOOTH, 2 * float(bone.spacing.max()))
         outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
         inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
-        outer, inner = chart.thickened(own, outer, inner)
+        outer, inner = radius_map.thickened(own, outer, inner)
     made = MirroredDesign(one, plane, own, image, outer, inner)
     keep = own.hole
     if made.lost > _TOLERATED:

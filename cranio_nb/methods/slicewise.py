@@ -20,13 +20,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .. import balloon, chart, features, fill, lesion, slicing
-from ..assembly import assemble
 from ..curves import ChordFrame, GapEnds, Points, cubic, spiral
 from ..errors import NoOpening
 from ..prosthesis import Lesion, Prosthesis
-from ..rays import RayProfile, fit_rims, share_tangents
+from ..stages import deformable_model, feature_extraction, prosthesis_volume
+from ..vault import opening_search, radius_map, slicing
+from ..vault.rims import RayProfile, fit_rims, share_tangents
 from ..volume import Volume
+from .assembly import assemble
 
 _TANGENT_ERROR, _TURN_ERROR = 0.05, 0.3  # radians of tangent error on sound bone, and per radian its rim bends
 _POINT_ERROR = 0.1  # mm: what a curve is off at its own ends
@@ -89,9 +90,9 @@ def paper_options(bone: Volume) -> dict[str, Any]:
     px = float(bone.spacing[1:].mean())
     return {
         "axial": True,
-        "skip": features.PAPER_SKIP * px,
+        "skip": feature_extraction.PAPER_SKIP * px,
         "reach": 10.0 * px,
-        "pressure": balloon.PAPER_PRESSURE,
+        "pressure": deformable_model.PAPER_PRESSURE,
         "n_snaxels": 21,
         "coupling": 0.0,
         "smooth": False,
@@ -159,7 +160,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = lesion.find(bone) if lesions is None else lesions
+    lesions = opening_search.find(bone) if lesions is None else lesions
     scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol, "max_iter": max_iter}
     curve = {"n": n_snaxels, "pressure": pressure, "scheme": scheme}
     working: list[SlicedDesign] = []
@@ -171,7 +172,7 @@ def design(
         else:
             made, piece = _fanned(bone, one, directions, skip, reach, coupling, curve)
         working += made
-        patch |= fill.main_piece(piece, one.opening.voxels)
+        patch |= prosthesis_volume.main_piece(piece, one.opening.voxels)
     if not patch.any():
         raise NoOpening("NothingBridged", "No slice of the opening could be bridged.", "Try another slicing.")
     tell("surface", 0.9)
@@ -194,9 +195,9 @@ def _axial(
     near = ndimage.binary_dilation(opening.any(axis=0), iterations=int(np.ceil(3 / px)))
     for s in results:
         if s.status == "hull":
-            filled = fill.partial_loss(slices[s.plane], min_area=4 / px**2, region=near)
+            filled = prosthesis_volume.partial_loss(slices[s.plane], min_area=4 / px**2, region=near)
         elif s.curves.size:
-            filled = fill.patch(s.curves[0], s.curves[1], slices[s.plane])
+            filled = prosthesis_volume.patch(s.curves[0], s.curves[1], slices[s.plane])
         else:
             continue
         patch[planes.start + s.plane] = filled
@@ -207,7 +208,7 @@ def _fanned(
     bone: Volume, one: Lesion, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
 ) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
     """Slices of one lesion in several directions, and the patch between the means of their curves."""
-    vault = chart.look(bone, one)
+    vault = radius_map.look(bone, one)
     made, radii, weights = [], [], []
     for fan in slicing.fans(vault, directions):
         profile = slicing.profile(vault, fan)
@@ -221,7 +222,7 @@ def _fanned(
     outer[vault.hole], inner[vault.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return made, np.zeros(bone.shape, bool)
-    return made, chart.voxelise(vault, *chart.thickened(vault, outer, inner), bone)
+    return made, radius_map.voxelise(vault, *radius_map.thickened(vault, outer, inner), bone)
 
 
 def _weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -257,13 +258,13 @@ def _by_skeleton(slices: NDArray[np.bool_], opening: NDArray[np.bool_], skip: fl
     results = []
     for plane in range(len(slices)):
         try:
-            seen = features.slice_features(slices[plane])
+            seen = feature_extraction.slice_features(slices[plane])
             if seen.closed:
                 results.append(SliceResult(plane, "hull", "closed ring"))
                 continue
-            ends = features.gap_ends(seen, opening[plane], skip=skip, reach=reach)
+            ends = feature_extraction.gap_ends(seen, opening[plane], skip=skip, reach=reach)
             results.append(SliceResult(plane, "balloon", ends=ends))
-        except features.SliceProblem as problem:
+        except feature_extraction.SliceProblem as problem:
             results.append(SliceResult(plane, "skipped", problem.message))
     return results
 
@@ -295,7 +296,7 @@ def _inflate(results: list[SliceResult], inside: NDArray, curve: dict[str, Any])
     )
     length = np.array([[f.length for f in pair] for pair in frames])
     start, slopes, push = _initial(length, angles[..., 0], angles[..., 1], curve["n"], curve["pressure"])
-    relaxed = balloon.inflate(start, slopes, pressure=push, **curve["scheme"])
+    relaxed = deformable_model.inflate(start, slopes, pressure=push, **curve["scheme"])
     out = list(results)
     for j, i in enumerate(own):
         values = {
@@ -330,7 +331,7 @@ def _initial(
     along = np.linalg.norm(np.diff(start, axis=-2), axis=-1).sum(-1)
     heads = [np.stack([np.cos(t), np.sin(t)], axis=-1) for t in (theta0, theta1 - np.pi)]
     slopes = np.stack(heads, axis=-2) * (along / (n - 1))[..., None, None]
-    return start, slopes, balloon.curvature_pressure(along, curvature)
+    return start, slopes, deformable_model.curvature_pressure(along, curvature)
 
 
 def _carry(results: list[SliceResult]) -> list[SliceResult]:

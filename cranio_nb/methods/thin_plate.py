@@ -39,15 +39,17 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from .. import chart, fill, lesion, prior_file, symmetry
-from ..assembly import assemble
-from ..chart import RadialChart
 from ..errors import InputRefused, NoOpening
-from ..maps import extended
-from ..prior import Prior, expect
+from ..prior import file as prior_file
+from ..prior.shape_prior import Prior, expect
 from ..prosthesis import Lesion, Prosthesis
-from ..symmetry import SymmetryPlane
+from ..stages import prosthesis_volume
+from ..vault import opening_search, radius_map, symmetry
+from ..vault.radius_map import RadialChart
+from ..vault.ray_grid import extended
+from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
+from .assembly import assemble
 
 Array = NDArray[np.float64]
 
@@ -133,7 +135,7 @@ def design(
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
     learned = prior_file.load(Path(prior)) if prior else None
-    lesions = lesion.find(bone) if lesions is None else lesions
+    lesions = opening_search.find(bone) if lesions is None else lesions
     tell("symmetry", 0.1)
     plane, found = _symmetry(bone, lesions[0]) if mirror else (None, {"unused": "not asked for"})
     patch = np.zeros(bone.shape, bool)
@@ -264,7 +266,7 @@ def _plate(
     bone: Volume, one: Lesion, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
     """Both plates of one lesion."""
-    vault = chart.look(bone, one)
+    vault = radius_map.look(bone, one)
     mirrored = None if plane is None else _other_side(bone, vault, plane)
     expected = None if learned is None else _expected(bone, vault, learned)
     nodes = max(1, round(_NODES / vault.mm))
@@ -281,7 +283,7 @@ def _plate(
 
 def _other_side(bone: Volume, vault: RadialChart, plane: SymmetryPlane) -> tuple[Array, Array]:
     """Outer and inner radii of the mirrored skull along the chart's rays; nan where it lacks bone."""
-    other = chart.along(vault, plane.mirrored(bone))
+    other = radius_map.along(vault, plane.mirrored(bone))
     return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
 
 
@@ -300,8 +302,8 @@ def _piece(plate: Plate, one: Lesion, bone: Volume) -> NDArray[np.bool_]:
     """The patch between both plates."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
-    outer, inner = chart.thickened(plate.chart, plate.outer, plate.inner)
-    return fill.main_piece(chart.voxelise(plate.chart, outer, inner, bone), one.opening.voxels)
+    outer, inner = radius_map.thickened(plate.chart, plate.outer, plate.inner)
+    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), one.opening.voxels)
 
 
 def thinned(values: Array, nodes: int) -> Array:

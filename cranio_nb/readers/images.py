@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..volume import Affine, Volume, canonical_order
-from .plausible import AIR, check_finite, check_hu, clear_padding, is_mask
+from .hu_checks import AIR, check_finite, check_hu, clear_padding, is_mask
+from .load_report import Finding, LoadReport
 from .regrid import slide_slices
-from .report import Finding, LoadReport
 
 MAX_VOXELS = 2**30
 _MAX_REST = 2**26  # bytes
@@ -47,9 +47,9 @@ def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] =
         start = stream.read(352)
         stream.seek(0)
         if start.startswith(b"NRRD000"):
-            from .nrrd_file import read_nrrd as read
+            from .nrrd import read_nrrd as read
         elif start[:2] == b"\x1f\x8b" or start[344:348] in (b"n+1\0", b"ni1\0") or start[4:8] in (b"n+2\0", b"ni2\0"):
-            from .nifti_file import read_nifti as read
+            from .nifti import read_nifti as read
         else:
             message = "The file is neither DICOM nor NIfTI nor NRRD."
             raise InputRefused("UnsupportedFile", message, "Give a DICOM folder, or a .nii, .nii.gz or .nrrd file.")
