@@ -1,4 +1,4 @@
-"""The import rule, read off the folders: imports go down only, siblings do not know each other, libraries have owners."""
+"""The import rule, read off the folders: imports go down only, siblings are strangers, libraries have owners."""
 
 import ast
 import subprocess

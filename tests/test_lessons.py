@@ -26,7 +26,7 @@ SMALL = '''# %% [markdown]
 # %% tags=["nbval-check-output"]
 import numpy as np
 
-from cranio_nb import classroom
+from cranio_nb.teaching import classroom
 
 print(np.arange(3))
 

@@ -12,9 +12,9 @@ from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.methods import thin_plate
 from cranio_nb.output.files import write_nifti
 from cranio_nb.prior import alignment, shape_prior, vault_radii
+from cranio_nb.prior import study as prior_study
 from cranio_nb.prior.file import VERSION, load, save
 from cranio_nb.prior.shape_prior import Expected
-from cranio_nb.prior import study as prior_study
 from cranio_nb.vault import radius_map as radial
 from cranio_nb.vault import ray_casting
 from cranio_nb.vault.opening_search import find

@@ -211,7 +211,7 @@ class TestCitation:
 
     def test_names_the_tool_as_it_is(self):
         assert self.citation["cff-version"] == "1.2.0" and self.citation["authors"] and self.citation["message"]
-        assert self.citation["version"] == cranio_nb.__version__
+        assert self.citation["version"] == cranio_nb.__version__ == version("cranio-nb")
         assert self.citation["license"] == PROJECT["project"]["license"]
         assert f"## [{cranio_nb.__version__}]" in (ROOT / "CHANGELOG.md").read_text()
 

@@ -10,6 +10,7 @@ from scipy import ndimage
 
 from cranio_nb.curves import ChordFrame, GapEnds, cubic
 from cranio_nb.drawing.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
+from cranio_nb.drawing.described import described
 from cranio_nb.errors import InputRefused
 from cranio_nb.evaluation import scores
 from cranio_nb.methods import slicewise
@@ -410,11 +411,11 @@ def test_of_many_waiting_calls_only_the_last_is_made(live):
 
 
 def test_a_static_twin_wants_words(static):
-    twin = widgets.static_twin(np.zeros((4, 6, 3), np.uint8), "A black box.", "black")
+    twin = described(np.zeros((4, 6, 3), np.uint8), "A black box.", "black")
     data, metadata = twin._repr_mimebundle_()
     assert data["image/png"][:4] == b"\x89PNG" and metadata["image/png"]["alt"] == "A black box."
     with pytest.raises(InputRefused):
-        widgets.static_twin(b"", " ", "line")
+        described(b"", " ", "line")
 
 
 def test_a_canvas_puts_a_slice_where_its_window_says():

@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
-from .. import __version__
 from ..drawing.front_end import proxy
 
 _NEEDED: tuple[str, ...] = (
@@ -64,7 +63,7 @@ class Check:
 
 def examine() -> Iterator[Check]:
     """Look at one thing after the other."""
-    yield Check("cranio-nb", "ok", __version__)
+    yield Check("cranio-nb", "ok", version("cranio-nb"))
     yield _python()
     for name in _NEEDED:
         yield _package(name, "missing", f"pip install {name}")

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from .. import __version__
 from ..errors import CannotWrite, CranioError, InputRefused
 from ..methods.catalogue import METHODS, PRESETS, check_options
 from ..readers import ALLOWANCES, read_ct
@@ -72,7 +71,7 @@ _json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead
 @click.group(
     cls=_Doors, commands=[compare, lab, lessons, prior], context_settings={"help_option_names": ["-h", "--help"]}
 )
-@click.version_option(__version__, prog_name="cranio-nb")
+@click.version_option(package_name="cranio-nb", prog_name="cranio-nb")
 @_debug
 def main() -> None:
     """From a head CT with a hole in the skull to the prosthesis that closes it.

@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputRefused
 from ..mesh import Mesh
-from ..teaching.widgets.panel import Bundle, bundle, png
 from .canvas import BLUE, GREEN, GREY, ORANGE, PURPLE, RGB, SKY, Canvas, rgb_of, round_length
+from .described import Bundle, bundle, encoded_png
 from .figures import colour_scale
 from .front_end import is_local, mode
 from .shading import Solid, render, view_axes
@@ -139,7 +139,7 @@ class Scene:
         return f"3-D scene{': ' + names if names else ''} ({faces} triangles)."
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Bundle:
-        data, metadata = bundle(png(self.picture), self.alt, self.line)
+        data, metadata = bundle(encoded_png(self.picture), self.alt, self.line)
         if mode() == "static":
             return data, metadata
         if not (find_spec("pyvista") and find_spec("trame_pyvista")):

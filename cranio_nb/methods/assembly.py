@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import __version__
 from ..prosthesis import Lesion, Prosthesis
 from ..stages import surface_reconstruction
 from ..volume import Volume
@@ -53,5 +53,5 @@ def assemble(
     worn = bone.with_voxels(patch)
     mesh = surface_reconstruction.extract(worn, smooth=options["smooth"])
     sides = surface_reconstruction.face_sides(mesh, bone, lesions[0].head_centre)
-    facts = {"version": __version__, "seconds": time.perf_counter() - began, **(record or {})}
+    facts = {"version": version("cranio-nb"), "seconds": time.perf_counter() - began, **(record or {})}
     return Prosthesis(mesh, sides, worn, method, options, facts, tuple(working))

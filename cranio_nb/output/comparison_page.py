@@ -8,13 +8,13 @@ from __future__ import annotations
 
 import csv
 import io
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import __version__
 from ..drawing import figures
 from ..drawing.shading import skull_surface, view_axes
 from ..evaluation.against_truth import SIDES
@@ -53,7 +53,7 @@ def comparison_csv(comparison: Comparison) -> str:
 def comparison_record(comparison: Comparison) -> dict[str, Any]:
     """What `comparison.json` says; JSON-able after `export.jsonable`."""
     return {
-        "cranio_nb": __version__,
+        "cranio_nb": version("cranio-nb"),
         "not_for_clinical_use": True,
         "load": load_record(comparison.case.load),
         "bone_threshold_hu": comparison.case.threshold,
@@ -71,7 +71,7 @@ def comparison_page(comparison: Comparison) -> str:
     """The page as text."""
     openings = [measure_opening(one) for one in comparison.case.lesions]
     return page_template("comparison.html").render(
-        version=__version__,
+        version=version("cranio-nb"),
         comparison=comparison,
         openings=openings,
         lines=dict(zip(comparison.made, _lines(len(comparison.made)), strict=True)),

@@ -14,7 +14,6 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from .. import __version__
 from ..errors import CannotWrite
 from ..evaluation.paper_tables import balloon_ranges, count_statuses
 from ..implant.workshop import implant_data
@@ -134,7 +133,7 @@ def design_record(result: RunResult) -> dict[str, Any]:
     made, load = result.prosthesis, result.load
     slices = made.record.get("slices", [])
     return {
-        "cranio_nb": __version__,
+        "cranio_nb": version("cranio-nb"),
         "not_for_clinical_use": True,
         "world": "DICOM LPS, mm",
         "load": load_record(load),

@@ -9,12 +9,12 @@ import base64
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from .. import __version__
 from ..drawing import figures
 from ..drawing.shading import skull_surface
 from ..evaluation.paper_tables import (
@@ -63,7 +63,7 @@ def report_page(result: RunResult) -> str:
     made = result.prosthesis
     slices = made.record.get("slices", [])
     return page_template("report.html").render(
-        version=__version__,
+        version=version("cranio-nb"),
         result=result,
         made=made,
         parameters=parameters_used(result),

@@ -12,7 +12,7 @@ import numpy as np
 
 from ..errors import InputRefused
 from ..volume import Affine
-from .images import Image, check_rest, no_orientation, read_exactly, spatial_shape
+from .image import Image, check_rest, no_orientation, read_exactly, spatial_shape
 from .load_report import Finding
 
 _MM_PER_UNIT = {0: 1.0, 1: 1000.0, 2: 1.0, 3: 1e-3}  # unknown, metre, mm, micrometre (xyzt_units & 7)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..volume import Affine
-from .images import Image, check_rest, no_orientation, read_exactly, spatial_shape
+from .image import Image, check_rest, no_orientation, read_exactly, spatial_shape
 from .load_report import Finding
 
 # sign of (x, y, z) from the file's frame to LPS

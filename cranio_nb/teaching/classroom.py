@@ -12,12 +12,13 @@ import os
 from collections.abc import Iterable
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..drawing import figures
+from ..drawing.described import described
 from ..errors import InputRefused
 from ..prosthesis import Lesion
 from ..readers import read_ct
@@ -158,33 +159,8 @@ def bridged_plane(bone: Volume, opening: Lesion, *, skip: float, reach: float) -
     )
 
 
-@dataclass(frozen=True, eq=False)
-class Picture:
-    """A picture with a description for those who cannot see it, and a line of numbers that can be compared.
-
-    Parameters
-    ----------
-    png : bytes
-    alt : str
-        What is to be seen.
-    line : str
-        The numbers of the picture; the same whenever the picture is.
-    """
-
-    png: bytes
-    alt: str
-    line: str
-
-    def __repr__(self) -> str:
-        return self.line
-
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> tuple[dict[str, Any], dict[str, Any]]:
-        return {"image/png": self.png, "text/plain": self.line}, {"image/png": {"alt": self.alt}}
-
-
-def picture(figure: Figure, alt: str, line: str) -> Picture:
-    """A figure with its description and its line of numbers; the last line of a cell."""
-    return Picture(figures.png(figure), alt, line)
+picture = described
+"""A figure with its description and its line of numbers: the last line of a cell."""
 
 
 def axes(n: int = 1, *, height: float = 3.4, width: float = 9.0) -> tuple[Figure, list[Axes]]:

@@ -7,9 +7,10 @@ degrees, attenuation in HU; the balloon's own frame is px, as in the paper.
 
 from ...drawing.front_end import mode
 from .bone import ct_viewer, threshold
+from .controls import View
 from .gap import features
 from .inflation import balloon
-from .panel import Panel, View, static_twin
+from .panel import Panel
 from .plates import bent_plate, elastic_sheet
 from .rivals import guiding_points, symmetry_plane
 from .solid import evaluation, surface
@@ -29,7 +30,6 @@ __all__ = [
     "guiding_points",
     "mode",
     "patch",
-    "static_twin",
     "surface",
     "symmetry_plane",
     "threshold",

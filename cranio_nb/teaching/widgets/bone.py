@@ -29,7 +29,8 @@ from ...drawing.canvas import (
 from ...drawing.canvas_axes import Chart
 from ...stages.segmentation import BONE_HU, fill_holes, threshold_hu
 from ...volume import Volume
-from .panel import Panel, Slider, Switch, View
+from .controls import Slider, Switch, View
+from .panel import Panel
 
 SIDE = 512  # px of a slice's picture
 _PART_COLOURS = (BONE, ORANGE, SKY, PURPLE, YELLOW, VERMILLION)

@@ -32,7 +32,8 @@ from ...drawing.canvas import (
 from ...stages import feature_extraction as stage
 from ...volume import Volume
 from .bone import SIDE, dress
-from .panel import Panel, Slider, View
+from .controls import Slider, View
+from .panel import Panel
 
 _INSET = 254  # px of a close-up
 _AROUND = 22.0  # mm seen around a gap end in a close-up

@@ -31,7 +31,8 @@ from ...drawing.canvas import (
 )
 from ...drawing.canvas_axes import Chart
 from ...stages import deformable_model as stage
-from .panel import Choice, Panel, Slider, View
+from .controls import Choice, Slider, View
+from .panel import Panel
 
 PRESETS = ("paper: k as set below", "tangent pressure: k from the ends", "spiral: k along its curve")
 MAX_STEPS = 300

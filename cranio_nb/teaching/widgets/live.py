@@ -13,7 +13,8 @@ from typing import Any
 
 import ipywidgets as ipw  # noqa: TID251  (this is the module that may)
 
-from .panel import Choice, Control, Panel, Slider, Switch, jpeg
+from ...drawing.described import encoded_jpeg
+from .controls import Choice, Control, Slider, Switch
 
 _UNSEEN = (
     '<p style="position:absolute;left:-9999px">%s</p>'  # read aloud only: the image widget takes no alternative text
@@ -26,7 +27,7 @@ _WIDE = ipw.Layout(width="580px")
 class Front:
     """The widgets of a panel: `controls` by name, `image`, `caption`, and the `box` that holds them."""
 
-    def __init__(self, panel: Panel) -> None:
+    def __init__(self, panel: Any) -> None:
         self.panel = panel
         self.controls = {name: _widget(control) for name, control in panel.controls.items()}
         height, width = panel.view.rgb.shape[:2]
@@ -79,7 +80,7 @@ class Front:
 
     def _show(self) -> None:
         view = self.panel.view
-        self.image.value = jpeg(view.rgb)
+        self.image.value = encoded_jpeg(view.rgb)
         self.caption.value = f'{_UNSEEN % _escaped(self.panel.alt)}<p role="status">{_escaped(view.line)}</p>'
         self._paused = True
         for name, high in (view.limits or {}).items():

@@ -5,77 +5,14 @@ A panel is the same in both modes up to its front: `live` puts real controls bef
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-from PIL import Image
-
+from ...drawing.described import Bundle, bundle, encoded_png
 from ...drawing.front_end import mode
 from ...errors import CranioError, InputRefused
-
-Bundle = tuple[dict[str, Any], dict[str, Any]]
-
-
-@dataclass(frozen=True)
-class Slider:
-    """A number to choose. `label` names it with its unit; `log` spaces the values evenly in their logarithm."""
-
-    name: str
-    label: str
-    low: float
-    high: float
-    value: float
-    step: float = 1.0
-    log: bool = False
-    player: bool = False
-
-
-@dataclass(frozen=True)
-class Choice:
-    """One of a few words to choose."""
-
-    name: str
-    label: str
-    options: tuple[str, ...]
-    value: str
-
-
-@dataclass(frozen=True)
-class Switch:
-    """Something to turn on and off."""
-
-    name: str
-    label: str
-    value: bool
-
-
-Control = Slider | Choice | Switch
-
-
-@dataclass(frozen=True, eq=False)
-class View:
-    """What a panel shows for one setting of its controls.
-
-    Parameters
-    ----------
-    rgb : ndarray of uint8, shape (H, W, 3)
-    line : str
-        One line in words and numbers, the same on every run.
-    limits : dict of str to float
-        New upper ends of sliders, by name.
-    off : tuple of str
-        Controls without effect at this setting.
-    """
-
-    rgb: NDArray[np.uint8]
-    line: str
-    limits: dict[str, float] | None = None
-    off: tuple[str, ...] = ()
+from .controls import Control, View
 
 
 class Panel:
@@ -146,69 +83,7 @@ class Panel:
         return Front(self)
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Bundle:
-        data, metadata = bundle(png(self.view.rgb), self.alt, self.view.line)
+        data, metadata = bundle(encoded_png(self.view.rgb), self.alt, self.view.line)
         if mode() == "widget":
             data |= self.front.box._repr_mimebundle_()
         return data, metadata
-
-
-@dataclass(frozen=True, eq=False)
-class StaticPicture:
-    """A picture with alternative text and one line; displays itself."""
-
-    png: bytes
-    alt: str
-    line: str
-
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Bundle:
-        return bundle(self.png, self.alt, self.line)
-
-
-def static_twin(picture: Any, alt: str, line: str) -> StaticPicture:
-    """A picture that says in words what it shows.
-
-    Parameters
-    ----------
-    picture : Figure, bytes or ndarray of uint8, shape (H, W, 3)
-        Matplotlib figure, PNG, or pixels.
-    alt : str
-        What is to be seen, for those who cannot see it.
-    line : str
-        One line that stands for the picture where there is only text; the same on every run.
-
-    Raises
-    ------
-    InputRefused
-        ``NoAlt`` when alt or line is empty.
-    """
-    if not alt.strip() or not line.strip():
-        raise InputRefused("NoAlt", "A picture without alternative text or without a line.", "Say what it shows.")
-    if isinstance(picture, np.ndarray):
-        picture = png(picture)
-    elif not isinstance(picture, bytes):
-        from ...drawing.figures import png as figure_png
-
-        picture = figure_png(picture)
-    return StaticPicture(picture, alt, line)
-
-
-def bundle(picture: bytes, alt: str, line: str) -> Bundle:
-    """Data and metadata of one output: the picture, its alternative text, and the line."""
-    width, height = Image.open(io.BytesIO(picture)).size
-    return {"image/png": picture, "text/plain": line}, {"image/png": {"alt": alt, "width": width, "height": height}}
-
-
-def png(rgb: NDArray[np.uint8]) -> bytes:
-    """Pixels as PNG, small."""
-    return _encoded(rgb, format="PNG", optimize=True)
-
-
-def jpeg(rgb: NDArray[np.uint8]) -> bytes:
-    """Pixels as JPEG, fast, with sharp colours."""
-    return _encoded(rgb, format="JPEG", quality=90, subsampling=0)
-
-
-def _encoded(rgb: NDArray[np.uint8], **options: Any) -> bytes:
-    stream = io.BytesIO()
-    Image.fromarray(rgb).save(stream, **options)
-    return stream.getvalue()

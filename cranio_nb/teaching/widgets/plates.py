@@ -24,7 +24,8 @@ from ...prosthesis import Lesion, Prosthesis
 from ...vault import radius_map, symmetry
 from ...vault.radius_map import RadialChart
 from ...volume import Volume
-from .panel import Panel, Slider, View
+from .controls import Slider, View
+from .panel import Panel
 from .solid import coloured
 
 MAX_STEPS = 40

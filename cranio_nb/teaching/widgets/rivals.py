@@ -22,7 +22,8 @@ from ...vault.radius_map import RadialChart
 from ...vault.symmetry import OuterSurface, SymmetryPlane
 from ...volume import Volume
 from .bone import dress
-from .panel import Panel, Slider, View
+from .controls import Slider, View
+from .panel import Panel
 from .solid import coloured
 
 _SIDE = 440  # px

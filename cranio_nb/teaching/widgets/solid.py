@@ -21,7 +21,8 @@ from ...mesh import Mesh
 from ...prosthesis import INNER, OUTER, Prosthesis
 from ...stages import surface_reconstruction as stage
 from ...volume import Volume
-from .panel import Choice, Panel, Slider, View
+from .controls import Choice, Slider, View
+from .panel import Panel
 
 SIDES = ("outer", "inner")
 _SIDE, _CHART = 440, 350  # px

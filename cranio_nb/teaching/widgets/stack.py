@@ -19,7 +19,8 @@ from ...prosthesis import Lesion
 from ...stages import prosthesis_volume
 from ...volume import Volume
 from .bone import SIDE, dress
-from .panel import Choice, Panel, Slider, Switch, View
+from .controls import Choice, Slider, Switch, View
+from .panel import Panel
 
 PRESSURES = ("from the end tangents", "the paper's constant k")
 _WORDS = {

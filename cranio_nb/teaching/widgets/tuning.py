@@ -19,7 +19,8 @@ from ...pipeline.run import TruthCheck
 from ...prosthesis import Prosthesis
 from ...vault import opening_search
 from ...volume import Volume
-from .panel import Choice, Panel, Slider, Switch, View
+from .controls import Choice, Slider, Switch, View
+from .panel import Panel
 from .solid import DistanceMap, coloured, distance_map, put_view
 
 if TYPE_CHECKING:
