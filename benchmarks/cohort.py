@@ -113,15 +113,15 @@ def _work(case: Case, left: Sequence[Contender], path: Path, head: Sequence[str]
     try:
         bone, truth = case.load(*case.arguments)
         bone = segment(bone)
-        lesions = find(bone)
-        reference = Reference.of(truth, bone, lesions[0])
+        openings = find(bone)
+        reference = Reference.of(truth, bone, openings[0])
     except ValueError as error:
         code = error.code if isinstance(error, CranioError) else "NoCase"
         for contender in left:
             _append(path, head, case, contender, {"status": "no patch", "code": code, "message": str(error)})
         return
     for contender in left:
-        trial = attempt(bone, lesions, contender)
+        trial = attempt(bone, openings, contender)
         outcome = {"status": trial.status, "code": trial.code, "message": trial.message}
         _append(path, head, case, contender, outcome | measure(trial, bone, reference))
 

@@ -37,13 +37,13 @@ def measure(name: str, bone: Volume, asked: tuple[Contender, ...]) -> None:
     """A line for each contender."""
     began = time.perf_counter()
     bone = segment(bone)
-    lesions = find(bone)
+    openings = find(bone)
     spacing = " x ".join(f"{s:.2f}" for s in bone.spacing[::-1])
     shape = " x ".join(map(str, bone.shape[::-1]))
     print(f"\n== {name}: {shape} voxels of {spacing} mm; bone and openings {time.perf_counter() - began:.1f} s")
     print(f"   {'method':18s} {'time (s)':>9s} {'CPU (s)':>9s} {'peak memory (MB)':>17s}")
     for contender in asked:
-        trial = attempt_apart(bone, lesions, contender)
+        trial = attempt_apart(bone, openings, contender)
         numbers = f"{trial.seconds:9.1f} {trial.cpu:9.1f} {trial.memory:17.0f}"
         print(f"   {contender.name:18s} {numbers}  {trial.message}", flush=True)
 

@@ -6,9 +6,9 @@ The rooms, from the ground up; imports go down only, and rooms on one floor do n
 
 ========  ====================================================================================================
 Nouns     `volume` voxels and where they stand; `curves` plane curves, gap ends, the chord frame; `mesh`
-          triangles; `maps` numbers over rays; `prosthesis` lesion, prosthesis, a row of Table 3; `errors` one sentence
+          triangles; `maps` numbers over rays; `prosthesis` opening, prosthesis, a row of Table 3; `errors` one sentence
           and a remedy
-Stages    `readers` scan -> CT; `segment` CT -> bone; `lesion` bone -> openings; `features` slice -> gap ends;
+Stages    `readers` scan -> CT; `segment` CT -> bone; `opening` bone -> openings; `features` slice -> gap ends;
           `balloon` gap ends -> curves; `fill` curves -> patch; `surface` patch -> mesh; `evaluate` patch and
           truth -> measures; `fit` and `implant` prosthesis -> what a workshop asks; `export` -> files
 Vault     `casting` rays from inside the head; `chart` the vault as radius maps; `symmetry` its symmetry plane; `rays`
@@ -18,14 +18,14 @@ Learned   `headframe` lays a skull on the mean head; `vaultmap` radius maps on i
 Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share; `tetrahedra` mask -> mesh,
           `solid` mesh -> voxels, `membrane` rim -> flat fill; `sheet` and `sheet_motion` elastic surfaces
 Methods   `methods.slicewise` the paper; `hull`, `reflection`, `you`, `thin_plate`, `dnurbs` its rivals; every method
-          is `design(bone, lesions, *, options) -> Prosthesis`, which `assembly` puts together from a patch, and
+          is `design(bone, openings, *, options) -> Prosthesis`, which `assembly` puts together from a patch, and
           `catalogue` knows them by name
 Outside   `run` the pipeline as one call; `trial` a method in a process of its own; `truth`, `compare` methods against
           the missing bone and each other; `tables`, `render`, `plot`, `report`, `compare_page`, `outputs`, `console`,
           `doctor`, `prior_study`, `cli`. Only `plot` imports matplotlib
 ========  ====================================================================================================
 
-Data's way: scan -> CT -> bone -> lesion -> [slice: gap ends -> balloon -> fill] -> patch -> mesh -> `Prosthesis`.
+Data's way: scan -> CT -> bone -> opening -> [slice: gap ends -> balloon -> fill] -> patch -> mesh -> `Prosthesis`.
 
 Frames. Conversions happen only in `Volume`, in `ChordFrame` and in the frames of `slicing`.
 

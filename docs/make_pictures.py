@@ -31,16 +31,16 @@ def main() -> None:
 
 def views(result: RunResult) -> list[Figure]:
     """The skull with its opening, and closed."""
-    lesion = result.lesions[0]
-    skull = skull_surface(result.bone, float(lesion.head_centre[2]) - 10.0)
-    return [figures.view_figure(skull, mesh, lesion.direction, px=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
+    opening = result.case.openings[0]
+    skull = skull_surface(result.case.bone, float(opening.head_centre[2]) - 10.0)
+    return [figures.view_figure(skull, mesh, opening.direction, px=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
 
 
 def middle_slice(result: RunResult) -> Figure:
     """The middle slice, with the boundaries, their ends and tangents, the curves and the patch."""
     sliced = next(part for part in result.prosthesis.working if isinstance(part, SlicedDesign))
     one = sliced.slices[len(sliced.slices) // 2]
-    return figures.slice_figure(sliced, one, result.bone, result.prosthesis.patch)
+    return figures.slice_figure(sliced, one, result.case.bone, result.prosthesis.patch)
 
 
 def side_by_side(parts: list[Figure]) -> Figure:

@@ -51,10 +51,10 @@ def counted():
     """An attempt that counts; burr holes are refused."""
     tried = []
 
-    def run(bone, lesions, contender):
+    def run(bone, openings, contender):
         tried.append(contender.name)
         if len(tried) % 2:
-            return attempt(bone, lesions, contender)
+            return attempt(bone, openings, contender)
         return Trial(contender, "refused", None, "TooSmall", "It is too small, or so.", 0.0, 0.0, 0.0)
 
     return run, tried

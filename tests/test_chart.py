@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from cranio_nb.prosthesis import Lesion
+from cranio_nb.opening import Opening
 from cranio_nb.vault.radius_map import look, voxelise
 from cranio_nb.volume import Volume
 
@@ -26,7 +26,7 @@ def head(spacing, bevel=0.0):
     whole = (radius >= INNER) & (radius <= OUTER)
     missing = whole & (angle < HALF + bevel * np.clip((radius - INNER) / (OUTER - INNER), 0, 1))
     sheet = (radius >= OUTER - 4) & (radius <= OUTER) & (angle < HALF)
-    return Volume(whole & ~missing, affine), missing, Lesion(Volume(sheet, affine), EYE)
+    return Volume(whole & ~missing, affine), missing, Opening(Volume(sheet, affine), EYE)
 
 
 def angles_of(chart):
@@ -35,8 +35,8 @@ def angles_of(chart):
 
 @pytest.fixture(scope="module", params=[(1.0, 1.0, 1.0), (3.0, 1.0, 1.0)], ids=["even", "thick planes"])
 def case(request):
-    bone, missing, lesion = head(request.param)
-    return bone, missing, look(bone, lesion), max(request.param)
+    bone, missing, opening = head(request.param)
+    return bone, missing, look(bone, opening), max(request.param)
 
 
 def test_radii_are_those_of_the_sphere(case):
@@ -56,7 +56,7 @@ def test_the_hole_is_the_cone(case):
     assert not chart.hole[angle > HALF + slack].any()
 
 
-def test_directions_are_unit_vectors_about_the_lesion_and_are_found_again(case):
+def test_directions_are_unit_vectors_about_the_opening_and_are_found_again(case):
     chart = case[2]
     np.testing.assert_allclose(np.linalg.norm(chart.directions, axis=-1), 1, atol=1e-12)
     np.testing.assert_allclose(chart.axes @ chart.axes.T, np.eye(3), atol=1e-9)
@@ -73,31 +73,31 @@ def test_the_true_radii_give_the_missing_bone_back(case):
 
 
 def test_a_bevelled_rim_belongs_to_the_hole_up_to_85_percent_of_the_thickness():
-    bone, _, lesion = head((1.0, 1.0, 1.0), bevel=4.0)
-    chart = look(bone, lesion)
+    bone, _, opening = head((1.0, 1.0, 1.0), bevel=4.0)
+    chart = look(bone, opening)
     edge = angles_of(chart)[chart.hole ^ ndimage.binary_erosion(chart.hole)]
     assert np.median(edge) == pytest.approx(HALF + 0.85 * 4.0, abs=0.8)
 
 
 def test_diploe_along_a_ray_is_not_the_end_of_the_bone():
-    bone, _, lesion = head((1.0, 1.0, 1.0))
+    bone, _, opening = head((1.0, 1.0, 1.0))
     index = np.moveaxis(np.indices(bone.shape), 0, -1)
     radius = np.linalg.norm(bone.to_world(index) - EYE, axis=-1)
     spongy = Volume(bone.voxels & ~((radius > 75.0) & (radius < 77.0)), bone.affine)
-    plain, chart = look(bone, lesion), look(spongy, lesion)
+    plain, chart = look(bone, opening), look(spongy, opening)
     near = (angles_of(chart) > HALF + 4) & (angles_of(chart) < HALF + 25)
     assert np.abs(chart.inner[near] - plain.inner[near]).mean() < 0.1
 
 
 def test_a_turned_header_turns_the_chart_and_changes_no_radius():
-    bone, _, lesion = head((3.0, 3.0, 3.0))
+    bone, _, opening = head((3.0, 3.0, 3.0))
     c, s = np.cos(0.4), np.sin(0.4)
     move = np.eye(4)
     move[:3, :3], move[:3, 3] = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]), [70, -20, 500]
     there = Volume(bone.voxels, move @ bone.affine)
     eye = move[:3, :3] @ EYE + move[:3, 3]
-    moved = look(there, Lesion(there.with_voxels(lesion.opening.voxels), eye))
-    here = look(bone, lesion)
+    moved = look(there, Opening(there.with_voxels(opening.sheet.voxels), eye))
+    here = look(bone, opening)
     np.testing.assert_allclose(moved.axes, here.axes @ move[:3, :3].T, atol=1e-9)
     np.testing.assert_allclose(moved.outer, here.outer, atol=1e-5)
     np.testing.assert_array_equal(moved.hole, here.hole)

@@ -164,7 +164,7 @@ def test_patch_stands_on_the_inputs_own_grid(kind, case, paper, tmp_path):
 def test_paper_preset_params_and_planes(home, tmp_path):
     params = tmp_path / "params.json"
     params.write_text('{"n_snaxels": 31, "tol": 0.002}')
-    arguments = ("--preset", "paper", "--params", params, "--lesion", "10:20", "--out", tmp_path / "out")
+    arguments = ("--preset", "paper", "--params", params, "--planes", "10:20", "--out", tmp_path / "out")
     result = cranio("design", home / "ct", *arguments)
     assert result.exit_code == 0, result.output
     record = json.loads((tmp_path / "out" / "design.json").read_text())
@@ -187,7 +187,7 @@ def test_bad_params_are_a_usage_error(content, home, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "arguments", [(), ("--method", "magic"), ("--lesion", "x"), ("--lesion", "3"), ("--preset", "best")], ids=str
+    "arguments", [(), ("--method", "magic"), ("--planes", "x"), ("--planes", "3"), ("--preset", "best")], ids=str
 )
 def test_usage_errors(arguments, home, tmp_path):
     out = ("--out", tmp_path / "out") if arguments else ()
@@ -244,8 +244,8 @@ def test_skull_without_a_hole(closed_skull, tmp_path):
 
 
 def test_planes_without_an_opening(home, tmp_path):
-    assert_refused(cranio("design", home / "ct", "--lesion", "0:1", "--out", tmp_path / "out"), 4, "planes")
-    assert_refused(cranio("design", home / "ct", "--lesion", "5:500", "--out", tmp_path / "out"), 3)
+    assert_refused(cranio("design", home / "ct", "--planes", "0:1", "--out", tmp_path / "out"), 4, "planes")
+    assert_refused(cranio("design", home / "ct", "--planes", "5:500", "--out", tmp_path / "out"), 3)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -32,25 +32,25 @@ from data_synth import phantom_case
 def from_truth(grow):
     """A method that knows the answer, and moves it `grow` planes up the head."""
 
-    def design(bone, lesions=None, *, progress=None):
+    def design(bone, openings=None, *, progress=None):
         case = phantom_case("tiny", "round", 0)
         patch = np.roll(case.implant, grow, axis=0) & ~bone.voxels
         mesh = extract(bone.with_voxels(patch))
-        sides = face_sides(mesh, bone, lesions[0].head_centre)
+        sides = face_sides(mesh, bone, openings[0].head_centre)
         return Prosthesis(mesh, sides, bone.with_voxels(patch), "stand-in", {}, {"version": "0", "seconds": 1.0})
 
     return design
 
 
-def refusing(bone, lesions=None, *, progress=None):
+def refusing(bone, openings=None, *, progress=None):
     raise InputRefused("CrossesMiddle", "The other side <is> open, too.", "Try another.")
 
 
-def finding_nothing(bone, lesions=None, *, progress=None):
+def finding_nothing(bone, openings=None, *, progress=None):
     raise NoOpening("NothingBridged", "Nothing was bridged.")
 
 
-def faulty(bone, lesions=None, *, progress=None):
+def faulty(bone, openings=None, *, progress=None):
     raise IndexError("a secret")
 
 
@@ -201,21 +201,21 @@ class TestContenders:
 
 
 def test_a_patch_that_runs_out_of_the_image_is_a_failure_and_no_refusal(case, monkeypatch):
-    def leaking(bone, lesions=None, *, progress=None):
+    def leaking(bone, openings=None, *, progress=None):
         patch = np.zeros(bone.shape, bool)
         patch[-1] = True
         return Prosthesis(extract(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking")
 
     monkeypatch.setitem(STAND_INS, "perfect", leaking)
     with only_stand_ins():
-        assert attempt(case.bone, case.lesions, Contender("perfect")).status == "no patch"
+        assert attempt(case.bone, case.openings, Contender("perfect")).status == "no patch"
 
 
 class TestApart:
     def test_is_the_same_design_and_does_not_count_what_this_process_holds(self, case):
-        here = attempt(case.bone, case.lesions, Contender("slicewise", "paper"))
+        here = attempt(case.bone, case.openings, Contender("slicewise", "paper"))
         ballast = np.ones(50_000_000)  # 400 MB
-        apart = attempt_apart(case.bone, case.lesions, Contender("slicewise", "paper"))
+        apart = attempt_apart(case.bone, case.openings, Contender("slicewise", "paper"))
         np.testing.assert_array_equal(apart.prosthesis.patch.voxels, here.prosthesis.patch.voxels)
         np.testing.assert_array_equal(apart.prosthesis.mesh.vertices, here.prosthesis.mesh.vertices)
         assert apart.prosthesis.parameters == here.prosthesis.parameters
@@ -223,7 +223,7 @@ class TestApart:
 
     def test_a_refusal_comes_back_as_a_sentence(self, case):
         whole = case.bone.with_voxels(np.zeros(case.bone.shape, bool))
-        apart = attempt_apart(whole, case.lesions, Contender("slicewise"))
+        apart = attempt_apart(whole, case.openings, Contender("slicewise"))
         assert apart.status != "done" and apart.prosthesis is None and apart.message.endswith(".")
 
 

@@ -236,9 +236,9 @@ def test_a_sheet_on_a_sphere_needs_no_springs_near_the_hole_to_stay_on_it():
     assert np.abs(dnurbs.radii_of(tense.outer, vault)[hole] - outer[hole]).max() < 0.1
 
 
-def test_free_weights_design_a_prosthesis_and_say_how(skull, lesions):
-    made = dnurbs.design(skull("burr_hole"), lesions("burr_hole"), span=20.0, free_weights=True, max_iter=3)
-    frozen = dnurbs.design(skull("burr_hole"), lesions("burr_hole"), span=20.0)
+def test_free_weights_design_a_prosthesis_and_say_how(skull, openings):
+    made = dnurbs.design(skull("burr_hole"), openings("burr_hole"), span=20.0, free_weights=True, max_iter=3)
+    frozen = dnurbs.design(skull("burr_hole"), openings("burr_hole"), span=20.0)
     for one, plain in zip(made.record["sheets"], frozen.record["sheets"], strict=True):
         assert 1 <= one["n_iter"] <= 3 and isinstance(one["converged"], bool)
         assert 0 < one["weights"][0] < one["weights"][1] and plain["weights"] == [1.0, 1.0] and plain["n_iter"] == 0

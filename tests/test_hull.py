@@ -5,7 +5,7 @@ import pytest
 
 from cranio_nb.errors import NoOpening
 from cranio_nb.methods import hull
-from cranio_nb.prosthesis import Lesion
+from cranio_nb.opening import Opening
 from cranio_nb.stages.prosthesis_volume import solid_piece
 from cranio_nb.volume import Volume
 
@@ -15,7 +15,7 @@ STEP = 1.5
 
 
 def ball(towards):
-    """A hollow ball about `EYE` with a conical hole, and its lesion."""
+    """A hollow ball about `EYE` with a conical hole, and its opening."""
     reach = OUTER + 6
     n = int(2 * reach / STEP)
     affine = np.eye(4)
@@ -26,7 +26,7 @@ def ball(towards):
     hole = cosine > np.cos(np.radians(HALF))
     bone = (radius >= INNER) & (radius <= OUTER) & ~hole
     sheet = (radius >= OUTER - 4) & (radius <= OUTER) & hole
-    return Volume(bone, affine), Lesion(Volume(sheet, affine), EYE)
+    return Volume(bone, affine), Opening(Volume(sheet, affine), EYE)
 
 
 def depths(made, towards):
@@ -38,8 +38,8 @@ def depths(made, towards):
 @pytest.mark.parametrize("axial", [False, True])
 def test_a_round_hole_gets_a_flat_lid_from_rim_to_rim(axial):
     towards = np.array([0.9, 0.35, 0.0])
-    bone, lesion = ball(towards)
-    made = hull.design(bone, (lesion,), axial=axial)
+    bone, opening = ball(towards)
+    made = hull.design(bone, (opening,), axial=axial)
     height = depths(made, towards)
     lid, floor = OUTER * np.cos(np.radians(HALF)), INNER * np.cos(np.radians(HALF))
     assert np.quantile(height, 0.99) < lid + 1.5 * STEP and np.quantile(height, 0.01) > floor - 1.5 * STEP
@@ -49,20 +49,20 @@ def test_a_round_hole_gets_a_flat_lid_from_rim_to_rim(axial):
 
 def test_the_hull_in_space_closes_the_top_where_slices_hold_no_ring():
     towards = np.array([0.0, 0.1, 1.0])
-    bone, lesion = ball(towards)
-    assert hull.design(bone, (lesion,)).patch.voxels.any()
+    bone, opening = ball(towards)
+    assert hull.design(bone, (opening,)).patch.voxels.any()
     try:
-        sliced = hull.design(bone, (lesion,), axial=True)
+        sliced = hull.design(bone, (opening,), axial=True)
     except NoOpening as nothing:
         assert nothing.code == "NothingBridged"
     else:
-        assert sliced.patch.voxels.sum() < 0.5 * hull.design(bone, (lesion,)).patch.voxels.sum()
+        assert sliced.patch.voxels.sum() < 0.5 * hull.design(bone, (opening,)).patch.voxels.sum()
 
 
-def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, lesions):
+def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, openings):
     """Every point of a slice's hull is a point of the hull in space."""
-    (part,) = hull.design(skull("round"), lesions("round")).working
-    sliced = hull.design(skull("round"), lesions("round"), axial=True).patch
+    (part,) = hull.design(skull("round"), openings("round")).working
+    sliced = hull.design(skull("round"), openings("round"), axial=True).patch
     away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.eye
     v, u = np.rint(part.vault.locate(away)).astype(int)
     top = part.outer[v, u]
@@ -70,16 +70,16 @@ def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, lesions):
     assert np.quantile(above[np.isfinite(top)], 0.99) < 0.6 * sliced.spacing.max()
 
 
-def test_every_slice_says_how_it_was_filled(skull, lesions):
-    record = hull.design(skull("unilateral"), lesions("unilateral"), axial=True).record["slices"]
-    first, end = lesions("unilateral")[0].planes
+def test_every_slice_says_how_it_was_filled(skull, openings):
+    record = hull.design(skull("unilateral"), openings("unilateral"), axial=True).record["slices"]
+    first, end = openings("unilateral")[0].planes
     assert [entry["plane"] for entry in record] == list(range(first - 2, end + 2))
     assert {"open ring"} <= {entry["reason"] for entry in record if entry["status"] == "hull"}
-    assert "slices" not in hull.design(skull("unilateral"), lesions("unilateral")).record
+    assert "slices" not in hull.design(skull("unilateral"), openings("unilateral")).record
 
 
-def test_a_hull_is_no_deeper_or_higher_than_its_two_surfaces(skull, lesions):
-    (part,) = hull.design(skull("round"), lesions("round")).working
+def test_a_hull_is_no_deeper_or_higher_than_its_two_surfaces(skull, openings):
+    (part,) = hull.design(skull("round"), openings("round")).working
     inside = part.vault.hole
     assert np.isfinite(part.outer[inside]).mean() > 0.98 and np.isnan(part.outer[~inside]).all()
     assert (part.outer - part.inner)[np.isfinite(part.outer)].min() > 2.0

@@ -23,44 +23,44 @@ def holes(case):
         yield (index[:, 0].min(), index[:, 0].max() + 1), centre, labels == i
 
 
-def matched(lesions, case):
-    """Pairs of a true hole and the lesion nearest to it."""
+def matched(openings, case):
+    """Pairs of a true hole and the opening nearest to it."""
     for planes, centre, mask in holes(case):
-        yield planes, centre, mask, min(lesions, key=lambda found: np.linalg.norm(found.centre - centre))
+        yield planes, centre, mask, min(openings, key=lambda found: np.linalg.norm(found.centre - centre))
 
 
 @pytest.mark.parametrize("defect", OPEN)
-def test_every_opening_of_a_named_defect_is_found_where_it_is(defect, phantom, lesions):
-    case, found = phantom(defect), lesions(defect)
+def test_every_opening_of_a_named_defect_is_found_where_it_is(defect, phantom, openings):
+    case, found = phantom(defect), openings(defect)
     assert len(found) == len(DEFECTS[defect])
-    for planes, centre, mask, lesion in matched(found, case):
+    for planes, centre, mask, opening in matched(found, case):
         # the sheet and a bevelled piece of a sphere do not weigh a hole's places alike
-        assert np.linalg.norm(lesion.centre - centre) < 5.0
-        np.testing.assert_allclose(lesion.planes, planes, atol=1)
-        covered = (lesion.opening.voxels & mask).sum()
-        assert covered > 0.6 * lesion.opening.voxels.sum()
-        assert not (lesion.opening.voxels & case.bone).any()
-        outwards = centre - lesion.head_centre
-        assert lesion.direction @ outwards / np.linalg.norm(outwards) > np.cos(np.radians(2))
+        assert np.linalg.norm(opening.centre - centre) < 5.0
+        np.testing.assert_allclose(opening.planes, planes, atol=1)
+        covered = (opening.sheet.voxels & mask).sum()
+        assert covered > 0.6 * opening.sheet.voxels.sum()
+        assert not (opening.sheet.voxels & case.bone).any()
+        outwards = centre - opening.head_centre
+        assert opening.direction @ outwards / np.linalg.norm(outwards) > np.cos(np.radians(2))
 
 
-def test_openings_come_largest_first_and_share_an_eye(lesions):
-    found = lesions("multiple")
-    sizes = [lesion.opening.voxels.sum() for lesion in found]
+def test_openings_come_largest_first_and_share_an_eye(openings):
+    found = openings("multiple")
+    sizes = [opening.sheet.voxels.sum() for opening in found]
     assert sizes == sorted(sizes, reverse=True)
-    for lesion in found[1:]:
-        np.testing.assert_array_equal(lesion.head_centre, found[0].head_centre)
-        assert not (lesion.opening.voxels & found[0].opening.voxels).any()
+    for opening in found[1:]:
+        np.testing.assert_array_equal(opening.head_centre, found[0].head_centre)
+        assert not (opening.sheet.voxels & found[0].sheet.voxels).any()
 
 
-def test_two_openings_are_the_two_found_alone(phantom, lesions):
+def test_two_openings_are_the_two_found_alone(phantom, openings):
     """Far-apart defects do not see each other: their union is that of the single runs."""
-    case, both = phantom("bilateral"), lesions("bilateral")
-    for _, _, mask, lesion in matched(both, case):
+    case, both = phantom("bilateral"), openings("bilateral")
+    for _, _, mask, opening in matched(both, case):
         alone = Volume(case.bone | (case.implant & ~mask), case.affine)
         (single,) = find(alone)
-        np.testing.assert_allclose(single.centre, lesion.centre, atol=1.5)
-        a, b = single.opening.voxels, lesion.opening.voxels
+        np.testing.assert_allclose(single.centre, opening.centre, atol=1.5)
+        a, b = single.sheet.voxels, opening.sheet.voxels
         assert 2 * (a & b).sum() / (a.sum() + b.sum()) > 0.9
 
 
@@ -122,33 +122,33 @@ def rotated(affine, degrees, shift):
 
 
 @pytest.mark.parametrize("degrees", [(0, 0, 0), (38, 0, 0), (0, 25, 15), (-20, 12, -30)])
-def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, skull, lesions):
-    bone, (here,) = skull("unilateral"), lesions("unilateral")
+def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, skull, openings):
+    bone, (here,) = skull("unilateral"), openings("unilateral")
     there_affine = rotated(bone.affine, degrees, (311.0, -47.5, 905.0))
     (there,) = find(Volume(bone.voxels, there_affine))
-    np.testing.assert_array_equal(there.opening.voxels, here.opening.voxels)
+    np.testing.assert_array_equal(there.sheet.voxels, here.sheet.voxels)
     move = there_affine @ np.linalg.inv(bone.affine)
     np.testing.assert_allclose(there.centre, move[:3, :3] @ here.centre + move[:3, 3], atol=1e-6)
     np.testing.assert_allclose(there.direction, move[:3, :3] @ here.direction, atol=1e-9)
 
 
 @pytest.mark.parametrize("defect", ["unilateral", "frontal", "vertex"])
-def test_flipping_left_and_right_mirrors_the_opening(defect, skull, lesions):
+def test_flipping_left_and_right_mirrors_the_opening(defect, skull, openings):
     bone = skull(defect)
-    (one,), (other,) = lesions(defect), find(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
-    a, b = one.opening.voxels, other.opening.voxels[:, :, ::-1]
+    (one,), (other,) = openings(defect), find(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
+    a, b = one.sheet.voxels, other.sheet.voxels[:, :, ::-1]
     thick = np.ones((3, 3, 3), bool)
     assert not (a & ~ndimage.binary_dilation(b, thick)).any()
     assert not (b & ~ndimage.binary_dilation(a, thick)).any()
     assert one.planes == other.planes
 
 
-def test_air_around_the_head_changes_nothing(skull, lesions):
+def test_air_around_the_head_changes_nothing(skull, openings):
     bone = skull("round")
     padded_affine = bone.affine.copy()
     padded_affine[:3, 3] = bone.to_world([-3, -6, -9])
     padded = Volume(np.pad(bone.voxels, ((3, 3), (6, 6), (9, 9))), padded_affine)
-    (here,), (there,) = lesions("round"), find(padded)
+    (here,), (there,) = openings("round"), find(padded)
     np.testing.assert_allclose(there.head_centre, here.head_centre, atol=2.0)
     np.testing.assert_allclose(there.centre, here.centre, atol=1.0)
 
@@ -161,12 +161,12 @@ def test_a_wider_hole_contains_the_narrower(phantom):
         cutter = case.head.cutters[0]
         sine = diameter / 2 / float(case.head.outer_radius(cutter.axes[2]))
         head = replace(case.head, cutters=(replace(cutter, half_angles=np.full(2, 2 * np.sin(np.arcsin(sine) / 2))),))
-        (lesion,) = find(Volume(scan(head, case.affine, case.bone.shape)[1], case.affine))
-        sheet = lesion.opening.voxels.sum()
+        (opening,) = find(Volume(scan(head, case.affine, case.bone.shape)[1], case.affine))
+        sheet = opening.sheet.voxels.sum()
         if planes_before:
-            assert lesion.planes[0] <= planes_before[0] and lesion.planes[1] >= planes_before[1]
+            assert opening.planes[0] <= planes_before[0] and opening.planes[1] >= planes_before[1]
         assert sheet > sheet_before
-        planes_before, sheet_before = lesion.planes, sheet
+        planes_before, sheet_before = opening.planes, sheet
 
 
 def test_openings_narrower_than_asked_for_are_not_openings(skull):

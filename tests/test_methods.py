@@ -90,8 +90,8 @@ def designed(method, skull):
     return make
 
 
-def run(method, bone, lesions=None):
-    return method.design(bone, lesions, **method.options(bone))
+def run(method, bone, openings=None):
+    return method.design(bone, openings, **method.options(bone))
 
 
 def dice(a, b):
@@ -134,10 +134,10 @@ def test_the_patch_agrees_with_the_missing_bone_as_well_as_claimed(defect, metho
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
-def test_the_sides_look_out_in_and_at_the_bone(defect, designed, lesions):
-    made, (lesion,) = designed(defect), lesions(defect)
+def test_the_sides_look_out_in_and_at_the_bone(defect, designed, openings):
+    made, (opening,) = designed(defect), openings(defect)
     assert len(made.sides) == len(made.mesh.faces)
-    towards = made.mesh.centres - lesion.head_centre
+    towards = made.mesh.centres - opening.head_centre
     away = np.linalg.norm(towards, axis=1)
     lean = (made.mesh.normals * towards).sum(axis=1) / away
     for side, sign in ((OUTER, 1), (INNER, -1)):
@@ -187,7 +187,7 @@ def test_two_holes_get_the_union_of_their_patches(method):
     found = find(bone)
     assert len(found) == 2
     both = run(method, bone, found)
-    single = [run(method, bone, (lesion,)).patch.voxels for lesion in found]
+    single = [run(method, bone, (opening,)).patch.voxels for opening in found]
     np.testing.assert_array_equal(both.patch.voxels, single[0] | single[1])
     assert check_mesh(both.mesh).n_parts == 2
     truth = Volume(case.implant, case.affine)
@@ -262,7 +262,7 @@ def test_progress_only_goes_forward(method, skull):
 
 
 def test_every_design_has_the_same_door(method):
-    bone, lesions, *options = inspect.signature(method.design).parameters.values()
-    assert (bone.name, lesions.name, lesions.default) == ("bone", "lesions", None)
+    bone, openings, *options = inspect.signature(method.design).parameters.values()
+    assert (bone.name, openings.name, openings.default) == ("bone", "openings", None)
     assert options and all(option.kind is option.KEYWORD_ONLY for option in options)
     assert all(option.default is not option.empty for option in options)

@@ -12,7 +12,7 @@ from cranio_nb.drawing import figures, shading
 from cranio_nb.drawing.shading import Solid
 from cranio_nb.mesh import Mesh
 from cranio_nb.methods.slicewise import SlicedDesign, SliceResult
-from cranio_nb.prosthesis import Lesion
+from cranio_nb.opening import Opening
 from cranio_nb.vault import slicing
 from cranio_nb.volume import Volume
 
@@ -132,8 +132,8 @@ def sliced(bone, patch) -> SlicedDesign:
     curves = np.array([[[r, 59.0], [r, 80.0], [r, 100.0]] for r in (30.0, 39.0)])
     done = SliceResult(1, "balloon", "", ends, curves + np.array([2.0, 0.0]), curves)
     results = (SliceResult(0, "skipped", "no bone"), done, SliceResult(2, "carried", "", curves=curves))
-    lesion = Lesion(patch, bone.to_world([1, 300, 80]))
-    return SlicedDesign(lesion, slicing.axial_frames(bone, range(3)), 0.5, results)
+    opening = Opening(patch, bone.to_world([1, 300, 80]))
+    return SlicedDesign(opening, slicing.axial_frames(bone, range(3)), 0.5, results)
 
 
 def test_slice_is_drawn_in_mm_with_all_its_parts(sliced, bone, patch):

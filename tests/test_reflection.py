@@ -48,11 +48,11 @@ def test_there_is_nothing_to_fit_on_a_symmetric_head(symmetric):
         assert np.nanmean(np.abs(a - b)) < 0.4
 
 
-def test_the_fitted_image_meets_the_rim(skull, lesions):
+def test_the_fitted_image_meets_the_rim(skull, openings):
     """A head that is not symmetric: along the hole's edge the step to the nearest bone shrinks."""
     steps = []
     for on in (False, True):
-        (made,) = reflection.design(skull("burr_hole"), lesions("burr_hole"), fit_rim=on).working
+        (made,) = reflection.design(skull("burr_hole"), openings("burr_hole"), fit_rim=on).working
         hole, bone = made.own.hole, made.own.outer
         known = np.isfinite(bone) & ~ndimage.binary_dilation(hole, iterations=2)
         v, u = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
@@ -61,8 +61,8 @@ def test_the_fitted_image_meets_the_rim(skull, lesions):
     assert steps[1] < steps[0]
 
 
-def test_the_difference_of_a_linear_step_goes_on_across_the_hole(skull, lesions):
-    (made,) = reflection.design(skull("burr_hole"), lesions("burr_hole")).working
+def test_the_difference_of_a_linear_step_goes_on_across_the_hole(skull, openings):
+    (made,) = reflection.design(skull("burr_hole"), openings("burr_hole")).working
     v, u = np.indices(made.own.outer.shape)
     step = 1.0 + 0.01 * v - 0.02 * u
     known = np.where(made.own.hole, np.nan, step)
@@ -71,17 +71,17 @@ def test_the_difference_of_a_linear_step_goes_on_across_the_hole(skull, lesions)
 
 
 @pytest.mark.parametrize("defect", ["vertex", "bilateral"])
-def test_what_has_no_mirror_image_is_refused_with_a_remedy(defect, skull, lesions):
+def test_what_has_no_mirror_image_is_refused_with_a_remedy(defect, skull, openings):
     with pytest.raises(InputRefused) as refused:
-        reflection.design(skull(defect), lesions(defect))
+        reflection.design(skull(defect), openings(defect))
     assert refused.value.code == "MirrorMissing"
     assert "partial" in refused.value.remedy and "%" in refused.value.message
 
 
 @pytest.mark.parametrize("defect", ["vertex", "bilateral"])
-def test_the_possible_part_has_bone_on_the_other_side(defect, skull, lesions):
+def test_the_possible_part_has_bone_on_the_other_side(defect, skull, openings):
     bone = skull(defect)
-    made = reflection.design(bone, lesions(defect), partial=True)
+    made = reflection.design(bone, openings(defect), partial=True)
     assert made.patch.voxels.any() and not (made.patch.voxels & bone.voxels).any()
     assert check_mesh(made.mesh).sound
     plane = made.working[0].plane
@@ -89,19 +89,19 @@ def test_the_possible_part_has_bone_on_the_other_side(defect, skull, lesions):
     index = np.clip(np.rint(image).astype(int), 0, np.array(bone.shape) - 1)
     near = ndimage.binary_dilation(bone.voxels, np.ones((3, 3, 3)))
     assert near[tuple(index.T)].mean() > 0.9
-    for entry in made.record["lesions"]:
+    for entry in made.record["openings"]:
         assert 0.03 < entry["without_mirror_image"] < 1
 
 
-def test_a_possible_lesion_is_closed_as_if_it_were_alone(phantom, skull, lesions):
+def test_a_possible_opening_is_closed_as_if_it_were_alone(phantom, skull, openings):
     """The whole hole is possible, so asking for the possible part changes nothing."""
-    whole = reflection.design(skull("burr_hole"), lesions("burr_hole"))
-    part = reflection.design(skull("burr_hole"), lesions("burr_hole"), partial=True)
+    whole = reflection.design(skull("burr_hole"), openings("burr_hole"))
+    part = reflection.design(skull("burr_hole"), openings("burr_hole"), partial=True)
     np.testing.assert_array_equal(whole.patch.voxels, part.patch.voxels)
 
 
-def test_the_plane_is_in_the_record(skull, lesions):
-    made = reflection.design(skull("burr_hole"), lesions("burr_hole"))
+def test_the_plane_is_in_the_record(skull, openings):
+    made = reflection.design(skull("burr_hole"), openings("burr_hole"))
     record = json.loads(json.dumps(made.record, allow_nan=False))["symmetry"]
     assert record == made.working[0].plane.record()
     assert {"angle_deg", "offset_mm", "residual_mm", "converged"} <= set(record)

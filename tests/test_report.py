@@ -135,11 +135,11 @@ def test_words_for_places_are_the_patients():
 
 
 def test_opening_is_measured(result):
-    (one,) = result.openings
-    assert one == measure_opening(result.lesions[0])
-    assert one.place.startswith("left") and result.lesions[0].planes == (one.planes[0], one.planes[1] + 1)
-    assert one.centre == pytest.approx(tuple(result.lesions[0].centre))
-    assert one.direction == pytest.approx(tuple(result.lesions[0].direction))
+    (one,) = result.sizes
+    assert one == measure_opening(result.case.openings[0])
+    assert one.place.startswith("left") and result.case.openings[0].planes == (one.planes[0], one.planes[1] + 1)
+    assert one.centre == pytest.approx(tuple(result.case.openings[0].centre))
+    assert one.direction == pytest.approx(tuple(result.case.openings[0].direction))
 
 
 @pytest.mark.parametrize(("value", "text"), [(None, "-"), (3, "3"), (2.5, "2.50"), (True, "True"), ("x", "x")])

@@ -154,7 +154,7 @@ def test_without_a_plane_of_symmetry_the_plate_is_bent_all_the_same(skull, made,
     assert made.working[0].mirrored is not None
 
 
-def test_the_working_holds_a_plate_for_each_lesion(made, skull):
+def test_the_working_holds_a_plate_for_each_opening(made, skull):
     assert len(made.working) == 1 and isinstance(made.patch, Volume)
     plate = made.working[0]
     np.testing.assert_array_equal(np.isfinite(plate.outer), plate.chart.hole)

@@ -43,8 +43,8 @@ def ct(phantom):
 
 
 @pytest.fixture(scope="session")
-def opening(lesions):
-    return lesions()[0].opening
+def opening(openings):
+    return openings()[0].sheet
 
 
 @pytest.fixture(scope="session")
@@ -88,7 +88,7 @@ def middle_plane(opening):
 
 
 def make_all(ct, skull, opened, arch, made, true):
-    opening = opened.opening
+    opening = opened.sheet
     return {
         "ct_viewer": widgets.ct_viewer(ct),
         "threshold": widgets.threshold(ct),
@@ -105,18 +105,18 @@ def make_all(ct, skull, opened, arch, made, true):
 
 
 @pytest.fixture(scope="session")
-def design(skull, lesions):
-    return slicewise.design(skull(), lesions(), directions=1)
+def design(skull, openings):
+    return slicewise.design(skull(), openings(), directions=1)
 
 
 @pytest.fixture(scope="session")
-def true(phantom, skull, lesions, design):
-    return run.check_truth(design, skull().with_voxels(phantom().implant), skull(), lesions()[0]).prosthesis
+def true(phantom, skull, openings, design):
+    return run.check_truth(design, skull().with_voxels(phantom().implant), skull(), openings()[0]).prosthesis
 
 
 @pytest.fixture(scope="session")
-def again(ct, skull, lesions, arch, design, true):
-    return lambda: make_all(ct, skull(), lesions()[0], arch, design, true)
+def again(ct, skull, openings, arch, design, true):
+    return lambda: make_all(ct, skull(), openings()[0], arch, design, true)
 
 
 @pytest.fixture(scope="session")
@@ -267,12 +267,12 @@ def test_the_end_pressure_leaves_k_without_effect(live, arch):
     assert (panel.view.rgb == before).all()
 
 
-def test_the_patch_of_a_slice_is_what_fill_and_hull_say(static, skull, lesions):
-    stack = widgets.stack.fill_slices(skull(), lesions()[0], widgets.stack.PRESSURES[1])
-    made = slicewise.design(skull(), lesions(), **slicewise.paper_options(skull())).patch.voxels
+def test_the_patch_of_a_slice_is_what_fill_and_hull_say(static, skull, openings):
+    stack = widgets.stack.fill_slices(skull(), openings()[0], widgets.stack.PRESSURES[1])
+    made = slicewise.design(skull(), openings(), **slicewise.paper_options(skull())).patch.voxels
     own = stack.patches & ~made[stack.first : stack.first + len(stack.slices)]
     assert own.sum() <= 0.02 * stack.patches.sum()  # all but loose crumbs
-    panel = widgets.patch(skull(), lesions()[0]).set(pressure=widgets.stack.PRESSURES[1])
+    panel = widgets.patch(skull(), openings()[0]).set(pressure=widgets.stack.PRESSURES[1])
     at = panel.values["plane"] - stack.first
     assert f"patch of {stack.areas[at]:.0f} mm" in panel.view.line and stack.areas[at] > 0
 
@@ -298,22 +298,22 @@ def test_the_map_of_distances_shows_the_distances_of_the_nodes(design, true):
     assert np.median(shown) == pytest.approx(np.median(seen.distances), rel=0.3)
 
 
-def test_guiding_points_say_what_the_method_fills(static, skull, lesions, true):
-    panel = widgets.guiding_points(skull(), lesions()[0], true).set(n=8)
-    made = you.fill_between(skull(), lesions()[0], you.find_guides(radius_map.look(skull(), lesions()[0]), 8))
+def test_guiding_points_say_what_the_method_fills(static, skull, openings, true):
+    panel = widgets.guiding_points(skull(), openings()[0], true).set(n=8)
+    made = you.fill_between(skull(), openings()[0], you.find_guides(radius_map.look(skull(), openings()[0]), 8))
     off = scores.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
     assert panel.view.line.startswith("8 guiding points: ")
     assert f"{off.mean():.2f} mm from the true surface on average, {off.max():.2f} mm at most" in panel.view.line
 
 
-def test_guiding_points_need_no_truth(static, skull, lesions):
-    line = widgets.guiding_points(skull(), lesions()[0]).view.line
+def test_guiding_points_need_no_truth(static, skull, openings):
+    line = widgets.guiding_points(skull(), openings()[0]).view.line
     assert line.startswith("12 guiding points") and "true" not in line
 
 
-def test_the_found_plane_has_the_least_residual(static, skull, lesions):
-    found = symmetry.find(skull(), lesions()[0].head_centre)
-    panel = widgets.symmetry_plane(skull(), lesions()[0])
+def test_the_found_plane_has_the_least_residual(static, skull, openings):
+    found = symmetry.find(skull(), openings()[0].head_centre)
+    panel = widgets.symmetry_plane(skull(), openings()[0])
     moves = ({}, {"turn": 4.0}, {"turn": 0.0, "lean": -5.0}, {"lean": 0.0, "shift": 3.0})
     lines = [panel.set(**move).view.line for move in moves]
     least, *others = (float(line.split("residual ")[1].split(" mm")[0]) for line in lines)
@@ -321,8 +321,8 @@ def test_the_found_plane_has_the_least_residual(static, skull, lesions):
     assert all(other > 2 * least for other in others)
 
 
-def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, lesions):
-    centre = lesions()[0].head_centre
+def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, openings):
+    centre = openings()[0].head_centre
     found, surface = symmetry.find(skull(), centre), symmetry.look(skull(), centre)
     other = widgets.rivals.moved(found, surface, turn=0.0, lean=0.0, shift=1.0)
     np.testing.assert_allclose(other.mirror(centre) - found.mirror(centre), 2 * found.normal, atol=1e-9)
@@ -332,14 +332,14 @@ def error_of(line):
     return float(line.split("rms ")[1].split(" mm")[0])
 
 
-def test_a_plate_that_is_held_by_nothing_errs_most(static, skull, lesions, true):
-    panel = widgets.bent_plate(skull(), lesions()[0], true)
+def test_a_plate_that_is_held_by_nothing_errs_most(static, skull, openings, true):
+    panel = widgets.bent_plate(skull(), openings()[0], true)
     bent = error_of(panel.view.line)
     assert bent < 1.0 < error_of(panel.set(second=0.0, third=0.0, mirror=0.0).view.line)
 
 
-def test_the_hole_of_a_coarse_chart_holds_the_hole_and_nothing_far_from_it(skull, lesions):
-    fine = radius_map.look(skull(), lesions()[0])
+def test_the_hole_of_a_coarse_chart_holds_the_hole_and_nothing_far_from_it(skull, openings):
+    fine = radius_map.look(skull(), openings()[0])
     vault = widgets.plates.coarse(fine, 3)
     start = (len(fine.hole) // 2) % 3
     assert vault.hole[fine.hole[start::3, start::3]].all()
@@ -347,13 +347,13 @@ def test_the_hole_of_a_coarse_chart_holds_the_hole_and_nothing_far_from_it(skull
     assert not (vault.hole & ~grown).any()
 
 
-def test_panels_of_plates_need_no_truth(static, skull, lesions):
+def test_panels_of_plates_need_no_truth(static, skull, openings):
     for panel in (widgets.bent_plate, widgets.elastic_sheet):
-        assert "in the hole" not in panel(skull(), lesions()[0]).view.line
+        assert "in the hole" not in panel(skull(), openings()[0]).view.line
 
 
-def test_mass_and_friction_do_not_move_the_place_of_rest(skull, lesions):
-    vault = widgets.plates.coarse(radius_map.look(skull(), lesions()[0]), 4)
+def test_mass_and_friction_do_not_move_the_place_of_rest(skull, openings):
+    vault = widgets.plates.coarse(radius_map.look(skull(), openings()[0]), 4)
     ways = [widgets.plates.relaxing(vault, 40.0, mass, damping) for mass, damping in ((0.0, 1.0), (3.0, 2.0))]
     first, second = (way.motions[-1].sheet.control for way in ways)
     assert all(way.motions[-1].converged for way in ways)
@@ -363,8 +363,8 @@ def test_mass_and_friction_do_not_move_the_place_of_rest(skull, lesions):
         assert (np.diff(energy) <= 1e-9 * energy[0]).all()
 
 
-def test_the_step_of_a_sheet_is_kept_within_its_way(static, skull, lesions, true):
-    panel = widgets.elastic_sheet(skull(), lesions()[0], true)
+def test_the_step_of_a_sheet_is_kept_within_its_way(static, skull, openings, true):
+    panel = widgets.elastic_sheet(skull(), openings()[0], true)
     last = panel.view.limits["step"]
     assert panel.view.line.startswith(f"Step {last} of {last}, at rest")
     assert panel.set(step=0).view.line.startswith(f"Step 0 of {last}, not at rest")

@@ -11,7 +11,7 @@ from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.mesh import Mesh
 from cranio_nb.methods.you import method as you
 from cranio_nb.methods.you.method import membrane
-from cranio_nb.prosthesis import Lesion
+from cranio_nb.opening import Opening
 from cranio_nb.vault import radius_map
 from cranio_nb.volume import Volume
 
@@ -37,7 +37,7 @@ def dome():
     hole = across < np.sqrt(60**2 - 52**2) * radius / 60
     affine = np.array([[0, 0, 1.0, -66], [0, 1.0, 0, -66], [1.0, 0, 0, 0], [0, 0, 0, 1]])
     bone = Volume(shell & ~hole, affine)
-    return bone, Lesion(Volume(shell & hole & (radius > 56) & (radius < 58), affine), np.zeros(3))
+    return bone, Opening(Volume(shell & hole & (radius > 56) & (radius < 58), affine), np.zeros(3))
 
 
 @pytest.fixture(scope="module")
@@ -138,8 +138,8 @@ def test_guides_in_either_sense_give_the_same_rim(dome, filling):
     assert turned.solid.volume == pytest.approx(filling.solid.volume, rel=0.02)
 
 
-def test_picked_guides_make_a_prosthesis(skull, lesions, phantom):
-    bone, found = skull("round"), lesions("round")
+def test_picked_guides_make_a_prosthesis(skull, openings, phantom):
+    bone, found = skull("round"), openings("round")
     guides = [you.find_guides(radius_map.look(bone, one), 9) for one in found]
     made = you.design_from_guides(bone, found, guides)
     assert made.parameters["guides"] == [points.tolist() for points in guides]

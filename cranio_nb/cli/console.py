@@ -18,7 +18,7 @@ from ..output.files import jsonable
 from ..readers import LoadReport
 
 if TYPE_CHECKING:
-    from ..evaluation.paper_tables import Opening
+    from ..evaluation.paper_tables import OpeningSize
     from ..pipeline.run import RunResult
 
 _PIPED_WIDTH = 110  # columns of a table that no terminal shows
@@ -66,7 +66,7 @@ def print_load(load: LoadReport) -> None:
         print_table("Chosen, skipped and corrected", ("Kind", "Name", "What was seen"), found)
 
 
-def print_openings(openings: Sequence[Opening]) -> None:
+def print_openings(openings: Sequence[OpeningSize]) -> None:
     """Openings as a table, nothing where there are none."""
     rows = [
         (
@@ -84,7 +84,7 @@ def print_openings(openings: Sequence[Opening]) -> None:
 
 def print_result(result: RunResult, out: Path) -> None:
     """What a run found, in a few lines, and where to look."""
-    for o in result.openings:
+    for o in result.sizes:
         click.echo(f"opening: {o.place}, {o.length:.0f} x {o.width:.0f} mm, planes {o.planes[0]}:{o.planes[1]}")
     click.echo(f"volume: {result.mesh.volume / 1000:.2f} cm3")
     if result.truth:

@@ -23,7 +23,7 @@ from .prior import prior
 if TYPE_CHECKING:
     from data_synth import Case
 
-    from ..evaluation.paper_tables import Opening
+    from ..evaluation.paper_tables import OpeningSize
 
 # a command loads what it works with only when it runs, so that `--help` is there at once
 _SIZES = ("tiny", "class", "full")
@@ -166,7 +166,7 @@ def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, a
 @click.option(
     "--prior", "learned", type=_PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate."
 )
-@click.option("--lesion", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
+@click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
 @click.option("--truth", type=_PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against.")
 @_mask
 @_threshold
@@ -179,7 +179,7 @@ def design(
     preset: str,
     params: Path | None,
     learned: Path | None,
-    lesion: str | None,
+    opening: str | None,
     truth: Path | None,
     mask: bool,
     threshold: float | None,
@@ -194,13 +194,13 @@ def design(
     Examples:
       cranio-nb design scans/head_ct --out out
       cranio-nb design skull.nii.gz --mask --preset paper --out out
-      cranio-nb design scans/head_ct --threshold 300 --lesion 40:75 --out out
+      cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
     """
     from ..output.design_folder import check_folder, staged, write_outputs
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
-    options, planes = _options(method, params), _planes(lesion)
+    options, planes = _options(method, params), _planes(opening)
     options |= {} if learned is None else {"prior": str(learned)}
     if out.resolve() == scan.resolve():
         raise click.BadParameter("this is the input; nothing is ever written there.", param_hint="--out")
@@ -246,7 +246,7 @@ def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, .
     with progress_bar() as tell:
         volume, load = read_ct(scan, mask=mask or None, allow=allow, progress=lambda i, n: tell("reading", i / n))
     problem: CranioError | None = None
-    openings: list[Opening] = []
+    openings: list[OpeningSize] = []
     try:
         openings = [measure_opening(one) for one in find_openings(volume, threshold)[1]]
     except CranioError as error:
@@ -327,14 +327,14 @@ def _options(method: str, params: Path | None) -> dict[str, Any]:
     return options
 
 
-def _planes(lesion: str | None) -> tuple[int, int] | None:
+def _planes(opening: str | None) -> tuple[int, int] | None:
     """First and last plane of ``A:B``."""
-    if lesion is None:
+    if opening is None:
         return None
     try:
-        first, last = (int(part) for part in lesion.split(":"))
+        first, last = (int(part) for part in opening.split(":"))
     except ValueError:
-        raise click.BadParameter("two plane numbers A:B are wanted.", param_hint="--lesion") from None
+        raise click.BadParameter("two plane numbers A:B are wanted.", param_hint="--planes") from None
     return first, last
 
 

@@ -208,7 +208,7 @@ def _draw_ends(ax: Axes, points: NDArray, tangents: NDArray) -> None:
 def _centre(sliced: SlicedDesign, frame: NDArray[np.float64]) -> NDArray[np.float64]:
     """The head's centre in a slice, (row, col) in mm."""
     origin, row, col = frame
-    away = sliced.lesion.head_centre - origin
+    away = sliced.opening.head_centre - origin
     return np.array([away @ axis / np.linalg.norm(axis) for axis in (row, col)])
 
 

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..mesh import Mesh
-from ..prosthesis import INNER, OUTER, DistanceStats, Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
 from ..stages import surface_reconstruction
 from ..volume import Volume
 from . import scores
@@ -44,7 +45,7 @@ class TruthCheck:
     table3: dict[str, DistanceStats]
 
 
-def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Lesion) -> TruthCheck:
+def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Opening) -> TruthCheck:
     """Measure a design against the missing bone.
 
     Parameters
@@ -55,13 +56,13 @@ def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Lesion) 
         Bool mask of the missing bone on the grid of `bone`.
     bone : Volume
         The skull with the hole.
-    largest : Lesion
+    largest : Opening
         Its head centre tells outside from inside.
     """
     return against(made, true_prosthesis(truth, bone, largest), bone)
 
 
-def true_prosthesis(truth: Volume, bone: Volume, largest: Lesion) -> Prosthesis:
+def true_prosthesis(truth: Volume, bone: Volume, largest: Opening) -> Prosthesis:
     """The missing bone as a prosthesis: its mesh with sides. Parameters as in `check_truth`."""
     mesh = surface_reconstruction.extract(truth)
     return Prosthesis(mesh, surface_reconstruction.face_sides(mesh, bone, largest.head_centre), truth, "truth")

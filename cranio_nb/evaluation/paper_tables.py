@@ -1,4 +1,4 @@
-"""A design's slices, lesions and distances -> rows of numbers: this run's Tables 1 to 3 and the paper's own.
+"""A design's slices, openings and distances -> rows of numbers: this run's Tables 1 to 3 and the paper's own.
 
 Frames: angles in degrees, lengths in mm unless a name says voxels.
 """
@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..prosthesis import DistanceStats, Lesion
+from ..opening import Opening
+from ..prosthesis import DistanceStats
 
 PAPER_BALLOONS = {
     "outer": {"theta0": (4.0, 22.0), "theta1": (156.0, 169.0), "n_iter": (48, 135)},
@@ -32,7 +33,7 @@ STATUSES = ("balloon", "hull", "carried", "skipped")
 
 
 @dataclass(frozen=True)
-class Opening:
+class OpeningSize:
     """An opening in words and numbers.
 
     Parameters
@@ -60,17 +61,17 @@ class Opening:
     place: str
 
 
-def measure_opening(lesion: Lesion) -> Opening:
+def measure_opening(opening: Opening) -> OpeningSize:
     """Measure an opening by its coarse sheet."""
-    index = np.argwhere(lesion.opening.voxels)
-    points = lesion.opening.to_world(index)
+    index = np.argwhere(opening.sheet.voxels)
+    points = opening.sheet.to_world(index)
     centre = points.mean(axis=0)
-    out = (centre - lesion.head_centre) / np.linalg.norm(centre - lesion.head_centre)
+    out = (centre - opening.head_centre) / np.linalg.norm(centre - opening.head_centre)
     flat = (points - centre)[::3]
     flat = flat - np.outer(flat @ out, out)
     axes = np.linalg.eigh(flat.T @ flat)[1][:, :0:-1].T
     length, width = (float(np.ptp(np.quantile(flat @ axis, [0.005, 0.995]))) for axis in axes)
-    return Opening(
+    return OpeningSize(
         (int(index[0, 0]), int(index[-1, 0])),
         length,
         width,

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..prosthesis import Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import Prosthesis
 from ..stages import surface_reconstruction
 from ..volume import Volume
 
@@ -21,7 +22,7 @@ from ..volume import Volume
 def assemble(
     patch: NDArray[np.bool_],
     bone: Volume,
-    lesions: Sequence[Lesion],
+    openings: Sequence[Opening],
     method: str,
     options: dict[str, Any],
     *,
@@ -37,7 +38,7 @@ def assemble(
         Voxels on the grid of the bone, at least one of them set.
     bone : Volume
         Bool mask of the skull.
-    lesions : sequence of Lesion
+    openings : sequence of Opening
         What the patch closes; the outer side of the mesh is seen from the first one's head centre.
     method : str
         Name of the method.
@@ -52,6 +53,6 @@ def assemble(
     """
     worn = bone.with_voxels(patch)
     mesh = surface_reconstruction.extract(worn, smooth=options["smooth"])
-    sides = surface_reconstruction.face_sides(mesh, bone, lesions[0].head_centre)
+    sides = surface_reconstruction.face_sides(mesh, bone, openings[0].head_centre)
     facts = {"version": version("cranio-nb"), "seconds": time.perf_counter() - began, **(record or {})}
     return Prosthesis(mesh, sides, worn, method, options, facts, tuple(working))

@@ -17,7 +17,7 @@ METHODS = {
     "thin-plate": "cranio_nb.methods.thin_plate",
     "dnurbs": "cranio_nb.methods.dnurbs.method",
 }
-"""Name -> module with the door ``design(bone, lesions, *, progress, **options) -> Prosthesis``. A module that also has
+"""Name -> module with the door ``design(bone, openings, *, progress, **options) -> Prosthesis``. A module that also has
 ``paper_options(bone)`` offers the preset "paper"."""
 
 PRESETS = ("default", "paper")

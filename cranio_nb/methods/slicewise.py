@@ -22,7 +22,8 @@ from scipy import ndimage
 
 from ..curves import ChordFrame, GapEnds, Points, cubic, spiral
 from ..errors import NoOpening
-from ..prosthesis import Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import Prosthesis
 from ..stages import deformable_model, feature_extraction, prosthesis_volume
 from ..vault import opening_search, radius_map, slicing
 from ..vault.rims import RayProfile, fit_rims, share_tangents
@@ -67,11 +68,11 @@ class SliceResult:
 
 @dataclass(frozen=True, eq=False)
 class SlicedDesign:
-    """What the method did for one lesion in one direction, slice by slice; for pictures, tables and lessons.
+    """What the method did for one opening in one direction, slice by slice; for pictures, tables and lessons.
 
     Parameters
     ----------
-    lesion : Lesion
+    opening : Opening
     frames : ndarray, shape (P, 3, 3)
         Origin, row and column vector of each slice, world mm: point = origin + row * r + col * c.
     unit : float
@@ -79,7 +80,7 @@ class SlicedDesign:
     slices : tuple of SliceResult
     """
 
-    lesion: Lesion
+    opening: Opening
     frames: NDArray[np.float64]
     unit: float
     slices: tuple[SliceResult, ...]
@@ -101,7 +102,7 @@ def paper_options(bone: Volume) -> dict[str, Any]:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     axial: bool = False,
     directions: int = 6,
@@ -124,7 +125,7 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     axial : bool
         As the paper: the planes of the scan, features by skeleton and convex hull.
@@ -150,44 +151,46 @@ def design(
     -------
     Prosthesis
         `record["slices"]` holds one entry per slice: status, reason, angles, lengths, iterations, convergence.
-        `working` holds a `SlicedDesign` per lesion and direction.
+        `working` holds a `SlicedDesign` per opening and direction.
 
     Raises
     ------
     NoOpening
         When the vault is closed, or no slice of the opening could be bridged.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = opening_search.find(bone) if lesions is None else lesions
+    openings = opening_search.find(bone) if openings is None else openings
     scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol, "max_iter": max_iter}
     curve = {"n": n_snaxels, "pressure": pressure, "scheme": scheme}
     working: list[SlicedDesign] = []
     patch = np.zeros(bone.shape, bool)
-    for i, one in enumerate(lesions):
-        tell("slices", 0.9 * i / len(lesions))
+    for i, one in enumerate(openings):
+        tell("slices", 0.9 * i / len(openings))
         if axial:
             made, piece = _axial(bone, one, skip, reach, curve)
         else:
             made, piece = _fanned(bone, one, directions, skip, reach, coupling, curve)
         working += made
-        patch |= prosthesis_volume.main_piece(piece, one.opening.voxels)
+        patch |= prosthesis_volume.main_piece(piece, one.sheet.voxels)
     if not patch.any():
         raise NoOpening("NothingBridged", "No slice of the opening could be bridged.", "Try another slicing.")
     tell("surface", 0.9)
     slices = [_entry(i, s) for i, part in enumerate(working) for s in part.slices]
-    return assemble(patch, bone, lesions, "slicewise", options, began=began, working=working, record={"slices": slices})
+    return assemble(
+        patch, bone, openings, "slicewise", options, began=began, working=working, record={"slices": slices}
+    )
 
 
 def _axial(
-    bone: Volume, one: Lesion, skip: float, reach: float, curve: dict[str, Any]
+    bone: Volume, one: Opening, skip: float, reach: float, curve: dict[str, Any]
 ) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
-    """Slices and patch of one lesion along the planes of the scan."""
+    """Slices and patch of one opening along the planes of the scan."""
     first, end = one.planes
     planes = range(max(first - 2, 0), min(end + 2, bone.shape[0]))
     px = float(bone.spacing[1:].mean())
-    opening = one.opening.voxels[planes.start : planes.stop]
+    opening = one.sheet.voxels[planes.start : planes.stop]
     slices = bone.voxels[planes.start : planes.stop]
     inside = bone.to_voxel(one.head_centre)[1:]
     results = _carry(_inflate(_by_skeleton(slices, opening, skip / px, reach / px), inside, curve))
@@ -205,9 +208,9 @@ def _axial(
 
 
 def _fanned(
-    bone: Volume, one: Lesion, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
+    bone: Volume, one: Opening, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
 ) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
-    """Slices of one lesion in several directions, and the patch between the means of their curves."""
+    """Slices of one opening in several directions, and the patch between the means of their curves."""
     vault = radius_map.look(bone, one)
     made, radii, weights = [], [], []
     for fan in slicing.fans(vault, directions):
@@ -350,6 +353,6 @@ def _carry(results: list[SliceResult]) -> list[SliceResult]:
     return out
 
 
-def _entry(lesion_index: int, s: SliceResult) -> dict[str, Any]:
+def _entry(index_of_opening: int, s: SliceResult) -> dict[str, Any]:
     """JSON-able record of a slice."""
-    return {"lesion": lesion_index, "plane": s.plane, "status": s.status, "reason": s.reason, **s.values}
+    return {"opening": index_of_opening, "plane": s.plane, "status": s.status, "reason": s.reason, **s.values}

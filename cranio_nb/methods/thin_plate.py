@@ -40,9 +40,10 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from ..errors import InputRefused, NoOpening
+from ..opening import Opening
 from ..prior import file as prior_file
 from ..prior.shape_prior import Prior, expect
-from ..prosthesis import Lesion, Prosthesis
+from ..prosthesis import Prosthesis
 from ..stages import prosthesis_volume
 from ..vault import opening_search, radius_map, symmetry
 from ..vault.radius_map import RadialChart
@@ -67,12 +68,12 @@ _LEAST_NODES = 12
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """What the method did for one lesion.
+    """What the method did for one opening.
 
     Parameters
     ----------
     chart : RadialChart
-        The vault around the lesion.
+        The vault around the opening.
     outer, inner : ndarray, shape (M, M)
         Radii of the prosthesis, mm; nan outside the hole.
     mirrored : tuple of ndarray, shape (M, M), or None
@@ -90,7 +91,7 @@ class Plate:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     second: float = 1.3,
     third: float = 1.8,
@@ -105,7 +106,7 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     second, third : float
         The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
@@ -122,7 +123,7 @@ def design(
     -------
     Prosthesis
         `record["symmetry"]` describes the symmetry plane or says why there is none. `working` holds a `Plate` per
-        lesion.
+        opening.
 
     Raises
     ------
@@ -131,24 +132,24 @@ def design(
     InputRefused
         ``NoPrior`` or ``PriorDoesNotFit``.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
     learned = prior_file.load(Path(prior)) if prior else None
-    lesions = opening_search.find(bone) if lesions is None else lesions
+    openings = opening_search.find(bone) if openings is None else openings
     tell("symmetry", 0.1)
-    plane, found = _symmetry(bone, lesions[0]) if mirror else (None, {"unused": "not asked for"})
+    plane, found = _symmetry(bone, openings[0]) if mirror else (None, {"unused": "not asked for"})
     patch = np.zeros(bone.shape, bool)
     plates = []
-    for i, one in enumerate(lesions):
-        tell("plates", 0.2 + 0.6 * i / len(lesions))
+    for i, one in enumerate(openings):
+        tell("plates", 0.2 + 0.6 * i / len(openings))
         plates.append(_plate(bone, one, plane, learned, {"second": second, "third": third, "likeness": mirror}))
         patch |= _piece(plates[-1], one, bone)
     if not patch.any():
         raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
     tell("surface", 0.8)
     record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
-    return assemble(patch, bone, lesions, "thin-plate", options, began=began, working=plates, record=record)
+    return assemble(patch, bone, openings, "thin-plate", options, began=began, working=plates, record=record)
 
 
 def bend(
@@ -251,7 +252,7 @@ def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_arra
     return sparse.csr_array((np.tile(stencil.ravel(), len(nodes)), (rows, nodes.ravel())), shape=shape)
 
 
-def _symmetry(bone: Volume, one: Lesion) -> tuple[SymmetryPlane | None, dict[str, Any]]:
+def _symmetry(bone: Volume, one: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
     """The symmetry plane, if there is one, and what to record of it."""
     try:
         plane = symmetry.find(bone, one.head_centre)
@@ -263,9 +264,9 @@ def _symmetry(bone: Volume, one: Lesion) -> tuple[SymmetryPlane | None, dict[str
 
 
 def _plate(
-    bone: Volume, one: Lesion, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
+    bone: Volume, one: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
-    """Both plates of one lesion."""
+    """Both plates of one opening."""
     vault = radius_map.look(bone, one)
     mirrored = None if plane is None else _other_side(bone, vault, plane)
     expected = None if learned is None else _expected(bone, vault, learned)
@@ -298,12 +299,12 @@ def _expected(bone: Volume, vault: RadialChart, learned: Prior) -> tuple[Array, 
     return outer, inner
 
 
-def _piece(plate: Plate, one: Lesion, bone: Volume) -> NDArray[np.bool_]:
+def _piece(plate: Plate, one: Opening, bone: Volume) -> NDArray[np.bool_]:
     """The patch between both plates."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
     outer, inner = radius_map.thickened(plate.chart, plate.outer, plate.inner)
-    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), one.opening.voxels)
+    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), one.sheet.voxels)
 
 
 def thinned(values: Array, nodes: int) -> Array:

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..drawing import figures
 from ..drawing.shading import skull_surface, view_axes
 from ..evaluation.against_truth import SIDES
-from ..evaluation.paper_tables import Opening, measure_opening
+from ..evaluation.paper_tables import OpeningSize, measure_opening
 from ..mesh import Mesh
 from ..pipeline.compare import MEASURES, Comparison, records
 from . import files
@@ -57,7 +57,7 @@ def comparison_record(comparison: Comparison) -> dict[str, Any]:
         "not_for_clinical_use": True,
         "load": load_record(comparison.case.load),
         "bone_threshold_hu": comparison.case.threshold,
-        "openings": [measure_opening(one) for one in comparison.case.lesions],
+        "openings": [measure_opening(one) for one in comparison.case.openings],
         "units": {key: what.unit for key, what in MEASURES.items()},
         "reference": comparison.reference,
         "methods": records(comparison),
@@ -69,7 +69,7 @@ def comparison_record(comparison: Comparison) -> dict[str, Any]:
 
 def comparison_page(comparison: Comparison) -> str:
     """The page as text."""
-    openings = [measure_opening(one) for one in comparison.case.lesions]
+    openings = [measure_opening(one) for one in comparison.case.openings]
     return page_template("comparison.html").render(
         version=version("cranio-nb"),
         comparison=comparison,
@@ -110,10 +110,10 @@ def _best(comparison: Comparison, key: str) -> float | None:
     return max(shown) if what.best == "high" else min(shown)
 
 
-def view_shots(comparison: Comparison, openings: list[Opening]) -> dict[str, list[Shot]]:
+def view_shots(comparison: Comparison, openings: list[OpeningSize]) -> dict[str, list[Shot]]:
     """Name of a view -> a picture of each prosthesis, and of the truth where it is known, all seen alike."""
     case = comparison.case
-    skull = skull_surface(case.bone, floor(openings, case.lesions[0]))
+    skull = skull_surface(case.bone, floor(openings, case.openings[0]))
     shown = {name: made.mesh for name, made in comparison.made.items()}
     if comparison.true is not None:
         shown = {"truth": comparison.true.mesh} | shown
@@ -131,11 +131,11 @@ def cut_shots(comparison: Comparison) -> list[Shot]:
     """Two cuts at right angles through the middle of the largest opening, with the outlines of all patches."""
     case, made = comparison.case, comparison.made
     patches = [p.patch for p in made.values() if p.patch is not None]
-    largest = case.lesions[0]
+    largest = case.openings[0]
     right, down, towards = view_axes(largest.direction)
     shots = []
     for along in (right, down):
-        points = largest.opening.to_world(np.argwhere(largest.opening.voxels)) - largest.centre
+        points = largest.sheet.to_world(np.argwhere(largest.sheet.voxels)) - largest.centre
         reach = float(np.abs(points @ along).max()) + _AROUND
         figure = figures.outlines_figure(case.bone, case.truth, patches, largest.centre, (along, -towards), reach)
         truth = ", the missing bone light blue" if case.truth is not None else ""
@@ -158,7 +158,7 @@ def _ends(along: NDArray[np.float64]) -> str:
 
 def distance_shots(comparison: Comparison) -> dict[str, list[Shot]]:
     """Side, in words -> a map for each contender but the reference, all on one colour scale and from one side."""
-    towards = np.array(comparison.case.lesions[0].direction)
+    towards = np.array(comparison.case.openings[0].direction)
     shots = {}
     for side, (words, sign) in _SEEN.items():
         maps = {name: sides[side] for name, sides in comparison.distances.items() if side in sides}

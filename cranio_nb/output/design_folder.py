@@ -115,7 +115,7 @@ def write_outputs(result: RunResult, folder: Path, tell: Callable[[str, float], 
     stl, report = folder / "prosthesis.stl", result.mesh
     files.write_mesh(result.prosthesis.mesh, stl, n_parts=report.n_parts, report=report)
     if result.prosthesis.patch is not None:
-        files.write_nifti(result.prosthesis.patch, folder / "patch.nii.gz", order=result.load.order)
+        files.write_nifti(result.prosthesis.patch, folder / "patch.nii.gz", order=result.case.load.order)
     files.write_json(folder / "design.json", design_record(result))
     tell("report", 0.92)
     files.write_text(folder / "report.html", report_page(result))
@@ -130,15 +130,15 @@ def design_record(result: RunResult) -> dict[str, Any]:
     dict
         JSON-able after `export.jsonable`.
     """
-    made, load = result.prosthesis, result.load
+    made, load = result.prosthesis, result.case.load
     slices = made.record.get("slices", [])
     return {
         "cranio_nb": version("cranio-nb"),
         "not_for_clinical_use": True,
         "world": "DICOM LPS, mm",
         "load": load_record(load),
-        "bone_threshold_hu": result.threshold,
-        "openings": result.openings,
+        "bone_threshold_hu": result.case.threshold,
+        "openings": result.sizes,
         "method": made.method,
         "preset": result.preset,
         "parameters": parameters_used(result),

@@ -21,15 +21,16 @@ from ..evaluation.paper_tables import (
     PAPER_BALLOONS,
     PAPER_DISTANCES,
     STATUSES,
-    Opening,
+    OpeningSize,
     balloon_ranges,
     count_statuses,
     telling_slices,
 )
 from ..implant.workshop import implant_data
 from ..methods.slicewise import SlicedDesign, SliceResult
+from ..opening import Opening
 from ..pipeline.run import RunResult, TruthCheck, parameters_used
-from ..prosthesis import INNER, OUTER, DistanceStats, Lesion
+from ..prosthesis import INNER, OUTER, DistanceStats
 
 N_SLICES = 6
 """Slices shown."""
@@ -107,10 +108,10 @@ def number(value: Any, digits: int = 2) -> str:
 
 def view_shots(result: RunResult) -> list[Shot]:
     """Skull and prosthesis from three sides."""
-    skull = skull_surface(result.bone, floor(result.openings, result.lesions[0]))
-    where = "; ".join(one.place for one in result.openings)
+    skull = skull_surface(result.case.bone, floor(result.sizes, result.case.openings[0]))
+    where = "; ".join(one.place for one in result.sizes)
     shots = []
-    for name, towards in figures.views_of([one.direction for one in result.openings]).items():
+    for name, towards in figures.views_of([one.direction for one in result.sizes]).items():
         alt = (
             f"Shaded view {name}: the vault of the skull in ivory and the prosthesis in blue, which closes the opening "
             f"({where}). Letters at the edges name the patient's sides; the scale bar is 50 mm."
@@ -120,7 +121,7 @@ def view_shots(result: RunResult) -> list[Shot]:
     return shots
 
 
-def floor(openings: Sequence[Opening], largest: Lesion) -> float:
+def floor(openings: Sequence[OpeningSize], largest: Opening) -> float:
     """World z in mm down to which views show the skull: below the openings, and above the face if they allow it."""
     lowest = min(one.lowest for one in openings)
     return min(float(largest.head_centre[2]) - 10.0, lowest - 15.0)
@@ -130,7 +131,7 @@ def slice_shots(result: RunResult) -> list[Shot]:
     """A few slices of each opening, in the first direction it was cut along, with all that was done in them."""
     made = result.prosthesis
     sliced = [part for part in made.working if isinstance(part, SlicedDesign)]
-    first = [next((part for part in sliced if part.lesion is one), None) for one in result.lesions]
+    first = [next((part for part in sliced if part.opening is one), None) for one in result.case.openings]
     shots = []
     for number_of, part in enumerate(first, 1):
         if part is None:
@@ -139,14 +140,14 @@ def slice_shots(result: RunResult) -> list[Shot]:
         for i in telling_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
             s, title = part.slices[i], f"{at} {i + 1} of {len(part.slices)}"
             skeleton = bool(made.parameters.get("axial", False))
-            figure = figures.slice_figure(part, s, result.bone, made.patch, skeleton=skeleton)
+            figure = figures.slice_figure(part, s, result.case.bone, made.patch, skeleton=skeleton)
             shots.append(shot(figure, _slice_alt(title, s), _slice_caption(title, s)))
     return shots
 
 
 def _directions(result: RunResult) -> int:
     """In how many directions the largest opening was cut."""
-    return sum(getattr(part, "lesion", None) is result.lesions[0] for part in result.prosthesis.working)
+    return sum(getattr(part, "opening", None) is result.case.openings[0] for part in result.prosthesis.working)
 
 
 def _slice_caption(title: str, s: SliceResult) -> str:
@@ -216,7 +217,7 @@ def distance_shots(result: RunResult) -> list[Shot]:
         d = truth.distances[side]
         surface = result.prosthesis.surface(label)
         figure = figures.distance_figure(
-            result.prosthesis.mesh, surface, d, sign * np.array(result.openings[0].direction), top
+            result.prosthesis.mesh, surface, d, sign * np.array(result.sizes[0].direction), top
         )
         alt = (
             f"Distance map of the {side} side: dark blue 0 mm, yellow {top:g} mm or more from the true surface; "

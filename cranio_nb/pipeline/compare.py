@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from ..evaluation import scores
 from ..evaluation.against_truth import side_distances, table3, true_prosthesis
 from ..evaluation.rim_gap import rim_gap
-from ..prosthesis import INNER, OUTER, RIM, Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import INNER, OUTER, RIM, Prosthesis
 from ..volume import Volume
 from .run import Prepared
 from .trial import Attempt, Contender, Trial, attempt_apart
@@ -85,7 +86,7 @@ class Reference:
     thickness: NDArray[np.float64]
 
     @classmethod
-    def of(cls, truth: Volume, bone: Volume, largest: Lesion) -> Reference:
+    def of(cls, truth: Volume, bone: Volume, largest: Opening) -> Reference:
         """From the mask of the missing bone, the skull with the hole and its largest opening."""
         true = true_prosthesis(truth, bone, largest)
         return cls(true, _thickness(true))
@@ -154,11 +155,11 @@ def compare(
         Called with (name of the contender, fraction done).
     """
     tell = progress or (lambda step, done: None)
-    truth = None if case.truth is None else Reference.of(case.truth, case.bone, case.lesions[0])
+    truth = None if case.truth is None else Reference.of(case.truth, case.bone, case.openings[0])
     trials, rows = [], []
     for i, contender in enumerate(contenders):
         tell(contender.name, i / len(contenders))
-        trials.append(attempt(case.bone, case.lesions, contender))
+        trials.append(attempt(case.bone, case.openings, contender))
         rows.append(measure(trials[-1], case.bone, truth))
     made = {t.contender.name: t.prosthesis for t in trials if t.prosthesis is not None}
     true = None if truth is None else truth.prosthesis

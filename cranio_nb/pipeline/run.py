@@ -13,11 +13,12 @@ from typing import Any
 
 from ..errors import InputRefused, NoOpening
 from ..evaluation.against_truth import TruthCheck, check_truth
-from ..evaluation.paper_tables import Opening, count_statuses, measure_opening, not_converged
+from ..evaluation.paper_tables import OpeningSize, count_statuses, measure_opening, not_converged
 from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
 from ..methods.catalogue import PRESETS, check_options, default_options, method_module
-from ..prosthesis import RIM, Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import RIM, Prosthesis
 from ..readers import Finding, LoadReport, read_ct
 from ..stages.segmentation import BONE_HU, segment
 from ..vault import opening_search
@@ -36,7 +37,7 @@ class Prepared:
     load : LoadReport
     bone : Volume
         Bool mask the design stands on.
-    lesions : tuple of Lesion
+    openings : tuple of Opening
         The openings to close, the largest first.
     threshold : float or None
         HU of the bone threshold; None for a mask.
@@ -48,7 +49,7 @@ class Prepared:
 
     load: LoadReport
     bone: Volume
-    lesions: tuple[Lesion, ...]
+    openings: tuple[Opening, ...]
     threshold: float | None
     truth: Volume | None
     seconds: dict[str, float]
@@ -60,16 +61,11 @@ class RunResult:
 
     Parameters
     ----------
-    load : LoadReport
-    bone : Volume
-        Bool mask the design stands on.
-    lesions : tuple of Lesion
-        The openings that were closed.
-    openings : tuple of Opening
-        The same in words and numbers.
+    case : Prepared
+        The scan and its openings.
+    sizes : tuple of OpeningSize
+        Place and size of each opening.
     preset : {"default", "paper"}
-    threshold : float or None
-        HU of the bone threshold; None for a mask.
     prosthesis : Prosthesis
     mesh : MeshReport
     rim : GapStats or None
@@ -81,12 +77,9 @@ class RunResult:
         Time of each step.
     """
 
-    load: LoadReport
-    bone: Volume
-    lesions: tuple[Lesion, ...]
-    openings: tuple[Opening, ...]
+    case: Prepared
+    sizes: tuple[OpeningSize, ...]
     preset: str
-    threshold: float | None
     prosthesis: Prosthesis
     mesh: MeshReport
     rim: GapStats | None
@@ -149,18 +142,18 @@ def run_design(
     tell = progress or (lambda step, done: None)
     case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=tell)
     clock = _Clock(case.seconds)
-    made = design_for(case.bone, case.lesions, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done))
+    made = design_for(
+        case.bone, case.openings, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done)
+    )
     clock.lap("design")
     tell("measuring", 0.8)
     mesh = check_mesh(made.mesh)
     rim = rim_gap(made.surface(RIM), case.bone) if (made.sides == RIM).any() else None
-    check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.lesions[0])
+    check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.openings[0])
     clock.lap("measures")
-    found = _findings(made, mesh, case.lesions)
-    sizes = tuple(measure_opening(one) for one in case.lesions)
-    return RunResult(
-        case.load, case.bone, case.lesions, sizes, preset, case.threshold, made, mesh, rim, check, found, clock.seconds
-    )
+    found = _findings(made, mesh, case.openings)
+    sizes = tuple(measure_opening(one) for one in case.openings)
+    return RunResult(case, sizes, preset, made, mesh, rim, check, found, clock.seconds)
 
 
 def prepare(
@@ -181,14 +174,14 @@ def prepare(
     known = None if truth is None else read_truth(truth, scan)
     clock.lap("read")
     tell("bone", 0.3)
-    bone, lesions, threshold = find_openings(scan, threshold)
-    lesions = lesions if planes is None else within_planes(lesions, planes)
-    _check_room([one.opening for one in lesions], "The opening of the skull")
+    bone, openings, threshold = find_openings(scan, threshold)
+    openings = openings if planes is None else within_planes(openings, planes)
+    _check_room([one.sheet for one in openings], "The opening of the skull")
     clock.lap("bone and openings")
-    return Prepared(load, bone, lesions, threshold, known, clock.seconds)
+    return Prepared(load, bone, openings, threshold, known, clock.seconds)
 
 
-def find_openings(scan: Volume, threshold: float | None = None) -> tuple[Volume, tuple[Lesion, ...], float | None]:
+def find_openings(scan: Volume, threshold: float | None = None) -> tuple[Volume, tuple[Opening, ...], float | None]:
     """Bone mask, openings (largest first) and the threshold used (None for a mask).
 
     Parameters
@@ -208,7 +201,7 @@ def find_openings(scan: Volume, threshold: float | None = None) -> tuple[Volume,
     return bone, opening_search.find(bone), threshold
 
 
-def within_planes(lesions: tuple[Lesion, ...], planes: tuple[int, int]) -> tuple[Lesion, ...]:
+def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tuple[Opening, ...]:
     """The parts of the openings in planes first..last (both included); openings elsewhere are left.
 
     Raises
@@ -219,17 +212,17 @@ def within_planes(lesions: tuple[Lesion, ...], planes: tuple[int, int]) -> tuple
         ``NoOpening`` when no opening meets it.
     """
     first, last = planes
-    n_planes = lesions[0].opening.shape[0]
+    n_planes = openings[0].sheet.shape[0]
     if not 0 <= first <= last < n_planes:
         raise InputRefused("BadPlanes", f"Planes {first} to {last} are not a range within 0 to {n_planes - 1}.")
     parts = []
-    for one in lesions:
-        voxels = one.opening.voxels.copy()
+    for one in openings:
+        voxels = one.sheet.voxels.copy()
         voxels[:first] = voxels[last + 1 :] = False
         if voxels.any():
-            parts.append(replace(one, opening=one.opening.with_voxels(voxels)))
+            parts.append(replace(one, sheet=one.sheet.with_voxels(voxels)))
     if not parts:
-        spans = ", ".join(f"{a} to {b - 1}" for a, b in (one.planes for one in lesions))
+        spans = ", ".join(f"{a} to {b - 1}" for a, b in (one.planes for one in openings))
         message = f"No opening lies in planes {first} to {last}; openings were found in planes {spans}."
         raise NoOpening("NoOpening", message)
     return tuple(parts)
@@ -263,7 +256,7 @@ def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
 
 def design_for(
     bone: Volume,
-    lesions: tuple[Lesion, ...],
+    openings: tuple[Opening, ...],
     method: str,
     preset: str,
     options: dict[str, Any],
@@ -278,7 +271,7 @@ def design_for(
     """
     module = method_module(method)
     start = module.paper_options(bone) if preset == "paper" else {}
-    made: Prosthesis = module.design(bone, lesions, progress=progress, **(start | options))
+    made: Prosthesis = module.design(bone, openings, progress=progress, **(start | options))
     _check_room([] if made.patch is None else [made.patch], "The prosthesis")
     return made
 
@@ -288,7 +281,7 @@ def parameters_used(result: RunResult) -> dict[str, Any]:
     return default_options(result.prosthesis.method) | result.prosthesis.parameters
 
 
-def _findings(made: Prosthesis, mesh: MeshReport, lesions: tuple[Lesion, ...]) -> tuple[Finding, ...]:
+def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...]) -> tuple[Finding, ...]:
     """What a reader of the result must not miss."""
     slices = made.record.get("slices", [])
     counts, restless = count_statuses(slices), not_converged(slices)
@@ -299,9 +292,9 @@ def _findings(made: Prosthesis, mesh: MeshReport, lesions: tuple[Lesion, ...]) -
         "FaultyMesh": (0 if mesh.sound else 1, "The mesh is not a sound solid."),
     }
     found = [Finding(c, "warning", text.format(n), {"count": n}) for c, (n, text) in candidates.items() if n]
-    if mesh.n_parts != len(lesions):
-        message = f"The prosthesis has {mesh.n_parts} separate parts for {len(lesions)} openings."
-        found.append(Finding("SeparateParts", "warning", message, {"parts": mesh.n_parts, "openings": len(lesions)}))
+    if mesh.n_parts != len(openings):
+        message = f"The prosthesis has {mesh.n_parts} separate parts for {len(openings)} openings."
+        found.append(Finding("SeparateParts", "warning", message, {"parts": mesh.n_parts, "openings": len(openings)}))
     if mesh.wall_p1 < _THIN:
         message = f"The wall is thinner than {mesh.wall_p1:.1f} mm over 1 % of the surface."
         found.append(Finding("ThinWall", "warning", message, {"wall_p1_mm": mesh.wall_p1}))

@@ -21,7 +21,8 @@ import numpy as np
 
 from ..errors import CranioError, InputRefused, NoOpening
 from ..methods.catalogue import METHODS, method_module
-from ..prosthesis import Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import Prosthesis
 from ..volume import Volume
 from .run import check_request, design_for
 
@@ -84,7 +85,7 @@ class Trial:
     memory: float
 
 
-Attempt = Callable[[Volume, Sequence[Lesion], Contender], Trial]
+Attempt = Callable[[Volume, Sequence[Opening], Contender], Trial]
 
 
 def contenders(names: Sequence[str] = ()) -> tuple[Contender, ...]:
@@ -111,13 +112,13 @@ def contenders(names: Sequence[str] = ()) -> tuple[Contender, ...]:
     return tuple(found)
 
 
-def attempt(bone: Volume, lesions: Sequence[Lesion], contender: Contender) -> Trial:
+def attempt(bone: Volume, openings: Sequence[Opening], contender: Contender) -> Trial:
     """Let a contender design in this process; never raises for what a method does."""
     method_module(contender.method)  # loaded before the clock runs
     made, status, code, message = None, "done", "", ""
     began, cpu = time.perf_counter(), time.process_time()
     try:
-        made = design_for(bone, tuple(lesions), contender.method, contender.preset, contender.options)
+        made = design_for(bone, tuple(openings), contender.method, contender.preset, contender.options)
     except CranioError as error:
         status, code, message = _status(error), error.code, str(error)
     except Exception as error:  # a rival's fault is a row of the table, not the end of it
@@ -127,15 +128,15 @@ def attempt(bone: Volume, lesions: Sequence[Lesion], contender: Contender) -> Tr
     return Trial(contender, status, made and replace(made, working=()), code, message, *spent, peak_memory())
 
 
-def attempt_apart(bone: Volume, lesions: Sequence[Lesion], contender: Contender) -> Trial:
+def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contender) -> Trial:
     """`attempt` in a new process, which gets the masks as memory-mapped files and gives back what it made.
 
     A process that dies, e.g. for lack of memory, is a trial with the status "broken".
     """
     with tempfile.TemporaryDirectory(prefix="cranio-nb-") as folder:
-        for name, volume in [("bone", bone), *((str(i), one.opening) for i, one in enumerate(lesions))]:
+        for name, volume in [("bone", bone), *((str(i), one.sheet) for i, one in enumerate(openings))]:
             np.save(Path(folder) / f"{name}.npy", volume.voxels)
-        centres = [one.head_centre for one in lesions]
+        centres = [one.head_centre for one in openings]
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
             try:
                 trial, patch = pool.submit(_child, folder, bone.affine, centres, contender).result()
@@ -178,8 +179,8 @@ def _child(folder: str, affine: Any, centres: list[Any], contender: Contender) -
     def load(name: str) -> Volume:
         return Volume(np.asarray(np.load(Path(folder) / f"{name}.npy", mmap_mode="r")), affine)
 
-    lesions = [Lesion(load(str(i)), centre) for i, centre in enumerate(centres)]
-    trial = attempt(load("bone"), lesions, contender)
+    openings = [Opening(load(str(i)), centre) for i, centre in enumerate(centres)]
+    trial = attempt(load("bone"), openings, contender)
     if trial.prosthesis is None or trial.prosthesis.patch is None:
         return trial, None
     patch = np.flatnonzero(trial.prosthesis.patch.voxels)

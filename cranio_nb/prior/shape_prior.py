@@ -98,7 +98,7 @@ class Prior:
 
 @dataclass(frozen=True, eq=False)
 class Expected:
-    """What a prior expects around a lesion.
+    """What a prior expects around an opening.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def check_intact(bone: Volume) -> None:
 
 
 def expect(prior: Prior, bone: Volume, chart: RadialChart) -> Expected:
-    """The most likely vault around a lesion, given the bone that is there.
+    """The most likely vault around an opening, given the bone that is there.
 
     Parameters
     ----------
@@ -168,7 +168,7 @@ def expect(prior: Prior, bone: Volume, chart: RadialChart) -> Expected:
     bone : Volume
         Bool mask of the skull with the hole; all of it informs, not only what the chart shows.
     chart : RadialChart
-        Of the lesion.
+        Of the opening.
 
     Raises
     ------

@@ -93,7 +93,7 @@ def gap_ends(
     ----------
     features : SliceFeatures
     opening : ndarray of bool, shape (R, C), optional
-        Where the lesion crosses this slice; it says which gap is meant where there are several.
+        Where the opening crosses this slice; it says which gap is meant where there are several.
     skip : float
         Arc length along the spine from its end over which boundary points are left out, px (the paper: 10 points).
     reach : float

@@ -65,7 +65,7 @@ def partial_loss(bone: NDArray[np.bool_], *, min_area: float, region: NDArray[np
     min_area : float
         Islands of fewer pixels are dropped.
     region : ndarray of bool, shape (R, C), optional
-        Where the lesion is; other dents of the skull are natural and stay.
+        Where the opening is; other dents of the skull are natural and stay.
     """
     missing = convex_hull_image(bone) & ~bone
     labels, n_parts = ndimage.label(missing, _EIGHT)
@@ -92,7 +92,7 @@ def main_piece(patch: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[
     Parameters
     ----------
     patch, opening : ndarray of bool, shape (P, R, C)
-        The opening is the lesion's coarse sheet.
+        The opening is the opening's coarse sheet.
     """
     box = tuple(_span(np.asarray(patch.any(axis=others))) for others in ((1, 2), (0, 2), (0, 1)))
     labels, n_parts = ndimage.label(patch[box])
@@ -119,7 +119,7 @@ def solid_piece(patch: NDArray[np.bool_], opening: Volume, bone: Volume, *, thin
     ----------
     patch : ndarray of bool, shape (P, R, C)
     opening : Volume
-        The lesion's coarse sheet.
+        The opening's coarse sheet.
     bone : Volume
         Bool mask on the same grid.
     thinnest : float

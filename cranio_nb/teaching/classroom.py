@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from ..drawing import figures
 from ..drawing.described import described
 from ..errors import InputRefused
-from ..prosthesis import Lesion
+from ..opening import Opening
 from ..readers import read_ct
 from ..stages import feature_extraction
 from ..volume import Volume
@@ -130,14 +130,14 @@ def load(
     return LessonCase(Volume(case.hu, case.affine), Volume(case.implant, case.affine), case)
 
 
-def bridged_plane(bone: Volume, opening: Lesion, *, skip: float, reach: float) -> int:
+def bridged_plane(bone: Volume, opening: Opening, *, skip: float, reach: float) -> int:
     """The plane nearest to the middle of an opening in which both ends of the gap can be seen.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    opening : Lesion
+    opening : Opening
     skip, reach : float
         As for `features.gap_ends`, px.
 
@@ -150,7 +150,7 @@ def bridged_plane(bone: Volume, opening: Lesion, *, skip: float, reach: float) -
     for plane in sorted(range(first, end), key=lambda p: abs(p - (first + end) // 2)):
         with suppress(feature_extraction.SliceProblem):
             seen = feature_extraction.slice_features(bone.voxels[plane])
-            feature_extraction.gap_ends(seen, opening.opening.voxels[plane], skip=skip, reach=reach)
+            feature_extraction.gap_ends(seen, opening.sheet.voxels[plane], skip=skip, reach=reach)
             return plane
     raise InputRefused(
         "NoAxialGap",

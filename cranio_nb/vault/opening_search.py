@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused, NoOpening
-from ..prosthesis import Lesion
+from ..opening import Opening
 from ..volume import Volume
 from .ray_grid import extended
 
@@ -53,7 +53,7 @@ class Sky:
     polar: NDArray[np.float64]
 
 
-def find(bone: Volume, *, min_diameter: float = 8.0) -> tuple[Lesion, ...]:
+def find(bone: Volume, *, min_diameter: float = 8.0) -> tuple[Opening, ...]:
     """Find every opening of the vault.
 
     Parameters
@@ -65,7 +65,7 @@ def find(bone: Volume, *, min_diameter: float = 8.0) -> tuple[Lesion, ...]:
 
     Returns
     -------
-    tuple of Lesion
+    tuple of Opening
         Largest first.
 
     Raises
@@ -81,7 +81,7 @@ def find(bone: Volume, *, min_diameter: float = 8.0) -> tuple[Lesion, ...]:
     if not parts:
         raise NoOpening("NoOpening", "The vault of this skull has no opening; there is nothing to close.")
     radius = _bridge(sky, parts)
-    return tuple(Lesion(_sheet(bone, sky, part, radius), sky.eye) for part in parts)
+    return tuple(Opening(_sheet(bone, sky, part, radius), sky.eye) for part in parts)
 
 
 def look(bone: Volume) -> Sky:

@@ -1,7 +1,7 @@
-"""The vault around a lesion as two radius maps: a bone mask and a lesion come in -> a chart goes out, and back again.
+"""The vault around an opening as two radius maps: a bone mask and an opening come in -> a chart goes out, and back again.
 
 Frames: chart (v, u), an azimuthal-equidistant map of the directions seen from a point inside the head, about the
-lesion's direction; radii in mm along those directions; the world in mm (LPS).
+opening's direction; radii in mm along those directions; the world in mm (LPS).
 
 On the chart the outer and the inner surface of the vault are single-valued, the hole is a region, and a prosthesis is
 a pair of radii per direction. Distances on it are true along lines through its middle.
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ..prosthesis import Lesion
+from ..opening import Opening
 from ..volume import Volume
 from . import ray_casting
 from .ray_grid import extended
@@ -28,7 +28,7 @@ _FILM = 0.75  # mm on the bone beside a hole that nobody would build
 
 @dataclass(frozen=True, eq=False)
 class RadialChart:
-    """Radius maps of the vault around a lesion.
+    """Radius maps of the vault around an opening.
 
     Parameters
     ----------
@@ -41,7 +41,7 @@ class RadialChart:
     outer, inner : ndarray, shape (M, M)
         Radii of the two surfaces of the vault, mm; nan where a ray meets none.
     hole : ndarray of bool, shape (M, M)
-        Directions in which bone is missing: the lesion with its bevelled or worn rim.
+        Directions in which bone is missing: the opening with its bevelled or worn rim.
     """
 
     eye: NDArray[np.float64]
@@ -69,31 +69,31 @@ class RadialChart:
         return np.stack([y * scale, x * scale]) + (len(self.outer) - 1) / 2
 
 
-def look(bone: Volume, lesion: Lesion) -> RadialChart:
-    """Measure the vault around a lesion along rays from inside the head.
+def look(bone: Volume, opening: Opening) -> RadialChart:
+    """Measure the vault around an opening along rays from inside the head.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    lesion : Lesion
+    opening : Opening
 
     Returns
     -------
     RadialChart
-        Centred on the lesion, reaching about 55 mm beyond it.
+        Centred on the opening, reaching about 55 mm beyond it.
     """
-    axes = _axes(lesion, bone)
+    axes = _axes(opening, bone)
     step = np.radians(_STEP)
-    points = lesion.opening.to_world(np.argwhere(lesion.opening.voxels)) - lesion.head_centre
+    points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)) - opening.head_centre
     widest = np.degrees(np.arccos(np.clip(points @ axes[2] / np.linalg.norm(points, axis=1), -1, 1))).max()
     half = int(min(widest + _BESIDE, _LARGEST) / _STEP)
     blank = np.full((2 * half + 1,) * 2, np.nan)
-    chart = RadialChart(lesion.head_centre, axes, step, blank, blank, np.zeros(blank.shape, bool))
-    opening, level = _opening_on(chart, points)
-    inner, outer = _radii(bone, chart, opening, level, hidden=opening)
-    chart = RadialChart(lesion.head_centre, axes, step, outer, inner, opening)
-    return RadialChart(lesion.head_centre, axes, step, outer, inner, _missing(chart))
+    chart = RadialChart(opening.head_centre, axes, step, blank, blank, np.zeros(blank.shape, bool))
+    hole, level = _opening_on(chart, points)
+    inner, outer = _radii(bone, chart, hole, level, hidden=hole)
+    chart = RadialChart(opening.head_centre, axes, step, outer, inner, hole)
+    return RadialChart(opening.head_centre, axes, step, outer, inner, _missing(chart))
 
 
 def along(chart: RadialChart, bone: Volume, *, least: float = 4.0) -> RadialChart:
@@ -102,7 +102,7 @@ def along(chart: RadialChart, bone: Volume, *, least: float = 4.0) -> RadialChar
     Parameters
     ----------
     chart : RadialChart
-        Of a lesion in the first skull.
+        Of an opening in the first skull.
     bone : Volume
         Bool mask of the other skull.
     least : float
@@ -198,10 +198,10 @@ def _between(chart: RadialChart, spread: list[NDArray], region: NDArray, box: Vo
     return inside
 
 
-def _axes(lesion: Lesion, bone: Volume) -> NDArray[np.float64]:
-    """Chart axes: the middle looks at the lesion, v runs along its long side, u across it."""
-    middle = lesion.direction
-    points = lesion.opening.to_world(np.argwhere(lesion.opening.voxels)[::7])
+def _axes(opening: Opening, bone: Volume) -> NDArray[np.float64]:
+    """Chart axes: the middle looks at the opening, v runs along its long side, u across it."""
+    middle = opening.direction
+    points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)[::7])
     flat = points - points.mean(axis=0)
     flat = flat - np.outer(flat @ middle, middle)
     long_side = np.linalg.svd(flat, full_matrices=False)[2][0]
@@ -219,7 +219,7 @@ def _directions(n: int, step: float, axes: NDArray) -> NDArray[np.float64]:
 
 
 def _opening_on(chart: RadialChart, points: NDArray) -> tuple[NDArray[np.bool_], float]:
-    """The lesion's sheet on the chart, and its typical outer radius in mm."""
+    """The opening's sheet on the chart, and its typical outer radius in mm."""
     v, u = np.rint(chart.locate(points)).astype(np.intp)
     opening = np.zeros(chart.outer.shape, bool)
     inside = (v >= 0) & (v < len(opening)) & (u >= 0) & (u < len(opening))

@@ -1,10 +1,10 @@
-"""Along which planes a lesion is cut: a chart of the vault comes in -> stacks of slices go out.
+"""Along which planes an opening is cut: a chart of the vault comes in -> stacks of slices go out.
 
 Frames: slice (row, col) in mm about the eye, a point inside the head; a slice's `frame` takes it to the world (mm,
-LPS). Rays of a slice: angle 0 looks at the lesion, against the rows, and grows towards the columns.
+LPS). Rays of a slice: angle 0 looks at the opening, against the rows, and grows towards the columns.
 
-The paper cuts axially and its lesion is lateral. Near the vertex an axial slice is a cap, not a ring, and meets the
-rim at a flat angle. A fan of planes through a point inside the head cuts every lesion as the paper's slices cut
+The paper cuts axially and its opening is lateral. Near the vertex an axial slice is a cap, not a ring, and meets the
+rim at a flat angle. A fan of planes through a point inside the head cuts every opening as the paper's slices cut
 theirs: each slice is a full ring, and crosses the hole the short way or any other way one likes.
 """
 
@@ -33,9 +33,9 @@ class Fan:
     Parameters
     ----------
     axes : ndarray, shape (3, 3)
-        Rows, world: the shared line (columns of the slices), the direction the planes turn to, the lesion.
+        Rows, world: the shared line (columns of the slices), the direction the planes turn to, the opening.
     tilts : ndarray, shape (P,)
-        Angle of each plane from the lesion's direction, radians, evenly spaced.
+        Angle of each plane from the opening's direction, radians, evenly spaced.
     angles : ndarray, shape (K,)
         Angles of the rays within a slice, radians, evenly spaced.
     """

@@ -1,6 +1,6 @@
 """The plane that divides a skull into halves like each other: a bone mask with holes comes in -> the plane goes out.
 
-Frame: world mm (LPS); rays in a chart (v, u) about the top of the head, as on `lesion.Sky`.
+Frame: world mm (LPS); rays in a chart (v, u) about the top of the head, as on `opening.Sky`.
 
 The outer surface of the vault is seen along rays from inside the head. A mirror plane maps it onto itself but for the
 skull's asymmetry: every point is reflected, and compared with the surface where its own ray meets it. Rays that meet

@@ -112,7 +112,7 @@ plane = classroom.bridged_plane(bone, openings[0], **follow)  # a slice with bot
 seen = feature_extraction.slice_features(
     bone.voxels[plane]
 )  # the bone's boundary and middle line
-outer, inner = feature_extraction.gap_ends(seen, openings[0].opening.voxels[plane], **follow)
+outer, inner = feature_extraction.gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
 # any point in the head: the balloon must know which way is out
 inside = bone.to_voxel(openings[0].head_centre)[1:]
 player = widgets.balloon(outer, inside, background=bone.voxels[plane], px=case.px)

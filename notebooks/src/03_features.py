@@ -132,7 +132,7 @@ classroom.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} 
 # 3. Move `reach` to 40 mm.
 
 # %% tags=["nbval-check-output"]
-widgets.features(bone, plane, opening=opening.opening)
+widgets.features(bone, plane, opening=opening.sheet)
 
 # %% [markdown]
 # <details>
@@ -166,7 +166,7 @@ def measured(plane, skip, reach):
     """Length of the gap (px) and its end angles (degrees), as found in a slice."""
     seen, hole = (
         feature_extraction.slice_features(bone.voxels[plane]),
-        opening.opening.voxels[plane],
+        opening.sheet.voxels[plane],
     )
     outer, _ = feature_extraction.gap_ends(seen, hole, skip=skip, reach=reach)
     frame = ChordFrame.of(outer, inside)

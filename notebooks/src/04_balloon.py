@@ -73,9 +73,7 @@ inside = bone.to_voxel(opening.head_centre)[1:]
 
 # %% tags=["nbval-check-output"]
 seen = feature_extraction.slice_features(bone.voxels[plane])
-outer, inner = feature_extraction.gap_ends(
-    seen, opening.opening.voxels[plane], skip=3, reach=10
-)
+outer, inner = feature_extraction.gap_ends(seen, opening.sheet.voxels[plane], skip=3, reach=10)
 frame = ChordFrame.of(outer, inside)
 theta0, theta1 = frame.end_angles(outer)
 start = cubic(frame.length, theta0, theta1, 21)

@@ -143,7 +143,7 @@ if case.truth is not None:
     print(f"bone was cut in slices {planes[0]} to {planes[-1]}")
 
 # %% [markdown]
-# The paper had 23 slices with a lesion, 3 of them by the hull and 20 by balloons.
+# The paper had 23 slices with an opening, 3 of them by the hull and 20 by balloons.
 #
 # (HD95: 95 % of the distances between the two surfaces are smaller; lesson 07.) A Dice of 0.549 is poor: only about
 # half of patch and truth coincide. It is not the filling that fails. The paper's constant pressure is too weak for

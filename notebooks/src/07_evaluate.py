@@ -152,7 +152,7 @@ flipped = bone.voxels[:, :, ::-1]
 shifts = np.arange(-15, 16)
 cover = [(np.roll(flipped, s, 2) & bone.voxels).sum() for s in shifts]
 best = shifts[np.argmax(cover)]
-near = ndimage.binary_dilation(openings[0].opening.voxels, iterations=6)
+near = ndimage.binary_dilation(openings[0].sheet.voxels, iterations=6)
 mirror = truth.with_voxels(np.roll(flipped, best, 2) & ~bone.voxels & near)
 s = scores.score(mirror, truth, bone)
 print(f"mirror, shifted by {best} columns: Dice {s.dice:.3f}, HD95 {s.hd95:.2f} mm")

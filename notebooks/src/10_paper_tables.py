@@ -16,7 +16,7 @@
 # **After this lesson you can**
 # - remake Tables 1 to 3 from a run's record;
 # - tell what of a published number depends on the data and what on the method;
-# - read the geometry of the authors' lesion off their table of angles.
+# - read the geometry of the authors' opening off their table of angles.
 #
 # **Time:** 45 minutes (text 20, questions 15, exercises 10). **You need:** lessons 04 and 07.
 #
@@ -153,7 +153,7 @@ print_row("printed: You", printed["You et al."])
 # <details>
 # <summary>Answer</summary>
 #
-# No. Their k = -0.062 was chosen for their lesion, and a `k` fits one width of gap (lesson 04). Our head has other
+# No. Their k = -0.062 was chosen for their opening, and a `k` fits one width of gap (lesson 04). Our head has other
 # gaps, other pixels and another `skip` in mm (10 pixels of 0.9 mm are 9 mm). Let `k` follow from the tangents, and
 # the same slices come much nearer: 2.25 falls to 0.83 outside, 2.01 to 1.24 inside; the paper has 1.10 and 0.72. A
 # shorter `skip` brings 0.43 and 0.74, the fans the rest. So the constant explains most. The idea was good; the constant

@@ -12,18 +12,18 @@ from PIL import Image
 
 CELLS = (
     """
-from cranio_nb import features, lesion, render, view3d, widgets
+from cranio_nb import features, opening, render, view3d, widgets
 from cranio_nb.prosthesis import OUTER
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 case = phantom_case("tiny")
 ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
-one = lesion.find(bone)[0]
+one = opening.find(bone)[0]
 plane = sum(one.planes) // 2
 """,
-    "widgets.features(bone, plane, opening=one.opening)",
+    "widgets.features(bone, plane, opening=one.sheet)",
     """
-ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.opening.voxels[plane], skip=3, reach=8)
+ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.sheet.voxels[plane], skip=3, reach=8)
 widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels[plane])
 """,
     'view3d.show(render.skull_surface(bone), colours=["#EDE7D8"], alt="A skull with a hole.", towards=one.direction)',

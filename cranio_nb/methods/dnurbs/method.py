@@ -32,7 +32,8 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ...errors import NoOpening
-from ...prosthesis import Lesion, Prosthesis
+from ...opening import Opening
+from ...prosthesis import Prosthesis
 from ...stages import prosthesis_volume
 from ...vault import opening_search, radius_map
 from ...volume import Volume
@@ -74,7 +75,7 @@ class Sheets:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     wavelength: float = 20.0,
     tension: float = 0.0,
@@ -91,7 +92,7 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     wavelength : float
         Ripples of the bone of this length in mm are halved; the rigidity follows from it.
@@ -111,32 +112,32 @@ def design(
     Returns
     -------
     Prosthesis
-        `record["sheets"]` tells of every sheet; `working` holds `Sheets` per lesion.
+        `record["sheets"]` tells of every sheet; `working` holds `Sheets` per opening.
 
     Raises
     ------
     NoOpening
         When the vault is closed, or nothing lies between the sheets.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = opening_search.find(bone) if lesions is None else lesions
+    openings = opening_search.find(bone) if openings is None else openings
     dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
     plate = {"wavelength": wavelength, "tension": tension, "span": span}
     working, patch = [], np.zeros(bone.shape, bool)
-    for i, one in enumerate(lesions):
-        tell("sheets", 0.9 * i / len(lesions))
+    for i, one in enumerate(openings):
+        tell("sheets", 0.9 * i / len(openings))
         made = fit(radius_map.look(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
         piece = radius_map.voxelise(made.vault, *radius_map.thickened(made.vault, *radii), bone)
-        patch |= prosthesis_volume.main_piece(piece, one.opening.voxels)
+        patch |= prosthesis_volume.main_piece(piece, one.sheet.voxels)
         working.append(made)
     if not patch.any():
         raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")
     tell("surface", 0.9)
     sheets = [entry for made in working for entry in _entries(made)]
-    return assemble(patch, bone, lesions, "dnurbs", options, began=began, working=working, record={"sheets": sheets})
+    return assemble(patch, bone, openings, "dnurbs", options, began=began, working=working, record={"sheets": sheets})
 
 
 def fit(

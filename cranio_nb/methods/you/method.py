@@ -31,7 +31,8 @@ from skimage.measure import find_contours
 
 from ...errors import InputRefused, NoOpening
 from ...mesh import Mesh
-from ...prosthesis import Lesion, Prosthesis
+from ...opening import Opening
+from ...prosthesis import Prosthesis
 from ...stages import prosthesis_volume
 from ...vault import opening_search, radius_map
 from ...volume import Volume
@@ -76,7 +77,7 @@ class Filling:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     n_guides: int = 12,
     smooth: bool = True,
@@ -88,7 +89,7 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     n_guides : int
         Guiding points around each hole, 3 at least.
@@ -100,7 +101,7 @@ def design(
     Returns
     -------
     Prosthesis
-        `working` holds a `Filling` per lesion.
+        `working` holds a `Filling` per opening.
 
     Raises
     ------
@@ -110,16 +111,16 @@ def design(
         ``TooFewGuides``; ``TangledRim`` when the rim of a hole crosses itself.
     """
     began = time.perf_counter()
-    lesions = opening_search.find(bone) if lesions is None else lesions
-    guides = [find_guides(radius_map.look(bone, one), n_guides) for one in lesions]
-    made = design_from_guides(bone, lesions, guides, smooth=smooth, progress=progress)
+    openings = opening_search.find(bone) if openings is None else openings
+    guides = [find_guides(radius_map.look(bone, one), n_guides) for one in openings]
+    made = design_from_guides(bone, openings, guides, smooth=smooth, progress=progress)
     options = {"n_guides": n_guides, "smooth": smooth}
     return replace(made, parameters=options, record=made.record | {"seconds": time.perf_counter() - began})
 
 
 def design_from_guides(
     bone: Volume,
-    lesions: Sequence[Lesion],
+    openings: Sequence[Opening],
     guides: Sequence[NDArray[np.float64]],
     *,
     smooth: bool = True,
@@ -129,10 +130,10 @@ def design_from_guides(
 
     Parameters
     ----------
-    bone, lesions, smooth, progress
+    bone, openings, smooth, progress
         As for `design`.
     guides : sequence of ndarray, shape (n, 3)
-        For each lesion at least 3 points near the outer edge of its rim, in order around the hole, world mm.
+        For each opening at least 3 points near the outer edge of its rim, in order around the hole, world mm.
 
     Returns
     -------
@@ -143,17 +144,17 @@ def design_from_guides(
     began = time.perf_counter()
     working = []
     patch = np.zeros(bone.shape, bool)
-    for i, (one, points) in enumerate(zip(lesions, guides, strict=True)):
-        tell("mesh", 0.9 * i / len(lesions))
+    for i, (one, points) in enumerate(zip(openings, guides, strict=True)):
+        tell("mesh", 0.9 * i / len(openings))
         working.append(fill_between(bone, one, np.asarray(points, float)))
         box = _box(bone, one, working[-1].guides)
-        patch[box] |= _piece(bone.crop(box), one.opening.voxels[box], working[-1].solid)
+        patch[box] |= _piece(bone.crop(box), one.sheet.voxels[box], working[-1].solid)
     if not patch.any():
         raise NoOpening("NothingFilled", "Nothing of the opening could be filled.", "Place guiding points on its rim.")
     tell("surface", 0.9)
     options = {"guides": [np.asarray(points).tolist() for points in guides], "smooth": smooth}
     fills = [_entry(side) for one in working for side in (one.outer, one.inner)]
-    return assemble(patch, bone, lesions, "you", options, began=began, working=working, record={"fills": fills})
+    return assemble(patch, bone, openings, "you", options, began=began, working=working, record={"fills": fills})
 
 
 def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.float64]:
@@ -169,14 +170,14 @@ def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.floa
     return vault.eye + vault.directions[v, u] * vault.outer[v, u, None]
 
 
-def fill_between(bone: Volume, one: Lesion, guides: NDArray[np.float64]) -> Filling:
+def fill_between(bone: Volume, one: Opening, guides: NDArray[np.float64]) -> Filling:
     """Fill one hole between guiding points.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    one : Lesion
+    one : Opening
         The hole.
     guides : ndarray, shape (n, 3)
         Near the outer edge of the rim, in order around the hole, world mm.
@@ -228,9 +229,9 @@ def _entry(one: Membrane) -> dict[str, Any]:
     return {"area": one.areas[-1], "harmonic_area": one.areas[0], "n_iter": len(one.areas), "converged": one.converged}
 
 
-def _box(bone: Volume, one: Lesion, guides: NDArray) -> tuple[slice, slice, slice]:
+def _box(bone: Volume, one: Opening, guides: NDArray) -> tuple[slice, slice, slice]:
     """Index box around the opening and the guides, with a margin."""
-    index = np.concatenate([np.argwhere(one.opening.voxels), bone.to_voxel(guides)])
+    index = np.concatenate([np.argwhere(one.sheet.voxels), bone.to_voxel(guides)])
     margin = _MARGIN / bone.spacing
     low = np.maximum(np.floor(index.min(axis=0) - margin).astype(int), 0)
     high = np.minimum(np.ceil(index.max(axis=0) + margin).astype(int) + 1, bone.shape)

@@ -49,7 +49,7 @@ def features(bone: Volume, plane: int, *, opening: Volume | None = None) -> Pane
     plane : int
         Slice to begin with.
     opening : Volume, optional
-        Bool mask of the lesion on the same grid (``lesion.opening``): says which gap is meant.
+        Bool mask of the opening on the same grid (``opening.sheet``): says which gap is meant.
     """
     part = Slices(bone, opening)
     controls = (
@@ -71,14 +71,14 @@ class Slices:
         box = ndimage.find_objects(bone.voxels.any(axis=0).view(np.uint8))
         rows, cols = (slice(max(s.start - 8, 0), s.stop + 8) for s in box[0]) if box else (slice(None), slice(None))
         self.bone = bone.crop((slice(None), rows, cols))
-        self.opening = None if opening is None else opening.crop((slice(None), rows, cols))
+        self.sheet = None if opening is None else opening.crop((slice(None), rows, cols))
         self.px = float(bone.spacing[1:].mean())
         self.seen = lru_cache(maxsize=8)(lambda plane: stage.slice_features(self.bone.voxels[plane]))
         self.drawn = lru_cache(maxsize=8)(lambda plane: _ground(self, plane))
 
     def ends(self, plane: int, skip: float, reach: float) -> tuple[GapEnds, GapEnds]:
         """Outer and inner gap ends; `skip` and `reach` in mm."""
-        opening = None if self.opening is None else self.opening.voxels[plane]
+        opening = None if self.sheet is None else self.sheet.voxels[plane]
         return stage.gap_ends(self.seen(plane), opening, skip=skip / self.px, reach=reach / self.px)
 
 

@@ -20,7 +20,8 @@ from ...methods.dnurbs import method as dnurbs
 from ...methods.dnurbs import sheet_motion
 from ...methods.dnurbs.sheet import Sheet
 from ...methods.dnurbs.sheet_motion import Dynamics, Motion, Setting
-from ...prosthesis import Lesion, Prosthesis
+from ...opening import Opening
+from ...prosthesis import Prosthesis
 from ...vault import radius_map, symmetry
 from ...vault.radius_map import RadialChart
 from ...volume import Volume
@@ -77,21 +78,21 @@ def look(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) 
     return Scene(vault, thin_plate.thinned(whole.outer, every))
 
 
-def bent_plate(bone: Volume, lesion: Lesion, truth: Prosthesis | None = None) -> Panel:
+def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) -> Panel:
     """Choose the orders and the strength of a thin plate; see its error on the map and a profile through the hole.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull.
-    lesion : Lesion
+    opening : Opening
     truth : Prosthesis, optional
         The missing bone with its patch, where it is known (`truth.true_prosthesis`).
     """
-    fine = radius_map.look(bone, lesion)
+    fine = radius_map.look(bone, opening)
     scene = look(fine, bone, truth, _PLATE)
     try:
-        other = radius_map.along(fine, symmetry.find(bone, lesion.head_centre).mirrored(bone))
+        other = radius_map.along(fine, symmetry.find(bone, opening.head_centre).mirrored(bone))
         scene = replace(scene, mirrored=coarse(other, _PLATE).outer)
     except InputRefused:  # no plane of symmetry: the third slider has no effect
         pass
@@ -192,18 +193,18 @@ class Way:
     motions: tuple[Motion, ...]
 
 
-def elastic_sheet(bone: Volume, lesion: Lesion, truth: Prosthesis | None = None) -> Panel:
+def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = None) -> Panel:
     """Push a sheet of D-NURBS into the head, let it go, and watch it come to rest; play, pause, step and scrub.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull.
-    lesion : Lesion
+    opening : Opening
     truth : Prosthesis, optional
         The missing bone with its patch, where it is known (`truth.true_prosthesis`).
     """
-    scene = look(radius_map.look(bone, lesion), bone, truth, _SHEET)
+    scene = look(radius_map.look(bone, opening), bone, truth, _SHEET)
     run = lru_cache(maxsize=16)(lambda *values: relaxing(scene.vault, *values))
     controls = (
         Slider("wavelength", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),

@@ -16,7 +16,8 @@ from ...drawing.shading import Solid, render, view_axes
 from ...evaluation import scores
 from ...methods.you import mesh_to_voxels
 from ...methods.you import method as you
-from ...prosthesis import OUTER, Lesion, Prosthesis
+from ...opening import Opening
+from ...prosthesis import OUTER, Prosthesis
 from ...vault import radius_map, symmetry
 from ...vault.radius_map import RadialChart
 from ...vault.symmetry import OuterSurface, SymmetryPlane
@@ -52,19 +53,19 @@ class FlatFill:
     off: NDArray[np.float64]
 
 
-def guiding_points(bone: Volume, lesion: Lesion, truth: Prosthesis | None = None) -> Panel:
+def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = None) -> Panel:
     """Choose the number of guiding points around a hole; see the rim they make and the fill across it.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull.
-    lesion : Lesion
+    opening : Opening
     truth : Prosthesis, optional
         The missing bone with sides and patch, where it is known (`truth.true_prosthesis`).
     """
-    vault, plane = radius_map.look(bone, lesion), sum(lesion.planes) // 2
-    made = lru_cache(maxsize=None)(lambda n: flat_fill(bone, lesion, vault, n, plane, truth))
+    vault, plane = radius_map.look(bone, opening), sum(opening.planes) // 2
+    made = lru_cache(maxsize=None)(lambda n: flat_fill(bone, opening, vault, n, plane, truth))
     lost = np.zeros(bone.shape[1:], bool) if truth is None or truth.patch is None else truth.patch.voxels[plane]
     alt = "The hole from outside with guiding points, rim and fill; beside it a slice with the fill and what it misses."
     controls = (Slider("n", "guiding points", 3, 24, 12),)
@@ -72,14 +73,14 @@ def guiding_points(bone: Volume, lesion: Lesion, truth: Prosthesis | None = None
 
 
 def flat_fill(
-    bone: Volume, lesion: Lesion, vault: RadialChart, n: int, plane: int, truth: Prosthesis | None
+    bone: Volume, opening: Opening, vault: RadialChart, n: int, plane: int, truth: Prosthesis | None
 ) -> FlatFill:
     """Fill a hole between `n` guiding points and measure it."""
-    made = you.fill_between(bone, lesion, you.find_guides(vault, n))
+    made = you.fill_between(bone, opening, you.find_guides(vault, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
     patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
     off = np.zeros(0) if truth is None else scores.surface_distance(made.outer.mesh.vertices, truth.surface(OUTER))
-    return FlatFill(made, _from_outside(made, lesion.direction), patch, off)
+    return FlatFill(made, _from_outside(made, opening.direction), patch, off)
 
 
 def _from_outside(made: you.Filling, towards: NDArray[np.float64]) -> Canvas:
@@ -124,18 +125,18 @@ def _guides_view(bone: Volume, plane: int, fill: FlatFill, lost: NDArray[np.bool
     return View(canvas.array(), line + ".")
 
 
-def symmetry_plane(bone: Volume, lesion: Lesion) -> Panel:
+def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     """Turn and shift the plane a skull is mirrored at, away from the one found; see what no longer agrees.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull.
-    lesion : Lesion
+    opening : Opening
         Its head centre is where the vault is looked at from, its planes choose the slice.
     """
-    found, surface = symmetry.find(bone, lesion.head_centre), symmetry.look(bone, lesion.head_centre)
-    plane = sum(lesion.planes) // 2
+    found, surface = symmetry.find(bone, opening.head_centre), symmetry.look(bone, opening.head_centre)
+    plane = sum(opening.planes) // 2
     controls = (
         Slider("turn", "turned about the upright axis (degrees)", -10.0, 10.0, 0.0, 0.5),
         Slider("lean", "leaning to a side (degrees)", -10.0, 10.0, 0.0, 0.5),

@@ -37,7 +37,7 @@ def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
     patch : Volume
         Bool mask.
     towards : array_like, shape (3,)
-        From the patch to the viewer, LPS; `Lesion.direction` looks straight at it.
+        From the patch to the viewer, LPS; `Opening.direction` looks straight at it.
     """
     raw = stage.extract(patch, smooth=False)
     smoothed = lru_cache(maxsize=None)(lambda n: raw if n == 0 else stage.extract(patch, n_steps=n))

@@ -15,7 +15,7 @@ from scipy import ndimage
 from ...drawing.canvas import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, tinted
 from ...drawing.canvas_axes import Chart
 from ...methods import slicewise
-from ...prosthesis import Lesion
+from ...opening import Opening
 from ...stages import prosthesis_volume
 from ...volume import Volume
 from .bone import SIDE, dress
@@ -33,7 +33,7 @@ _WORDS = {
 
 @dataclass(frozen=True, eq=False)
 class Stack:
-    """The patches of one lesion, slice by slice.
+    """The patches of one opening, slice by slice.
 
     Parameters
     ----------
@@ -64,20 +64,20 @@ class Stack:
         return Window.around((0, 0, SIDE, SIDE), low - room, high + room)
 
 
-def patch(bone: Volume, lesion: Lesion) -> Panel:
+def patch(bone: Volume, opening: Opening) -> Panel:
     """Fill the gap of every slice: between the curves, or by the hull where the loss is partial.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull.
-    lesion : Lesion
+    opening : Opening
     """
-    made = lru_cache(maxsize=2)(lambda pressure: fill_slices(bone, lesion, pressure))
+    made = lru_cache(maxsize=2)(lambda pressure: fill_slices(bone, opening, pressure))
     first = made(PRESSURES[0]).first
     last = first + len(made(PRESSURES[0]).slices) - 1
     controls = (
-        Slider("plane", f"slice ({first} to {last})", first, last, sum(lesion.planes) // 2),
+        Slider("plane", f"slice ({first} to {last})", first, last, sum(opening.planes) // 2),
         Choice("pressure", "pressure k", PRESSURES, PRESSURES[0]),
         Switch("curves", "show the curves", True),
     )
@@ -85,17 +85,17 @@ def patch(bone: Volume, lesion: Lesion) -> Panel:
     return Panel(controls, lambda pressure, **values: patch_view(made(pressure), **values), alt=alt)
 
 
-def fill_slices(bone: Volume, lesion: Lesion, pressure: str) -> Stack:
-    """Curves and patches of all slices of a lesion, axial as in the paper."""
+def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
+    """Curves and patches of all slices of an opening, axial as in the paper."""
     options = slicewise.paper_options(bone)
     if pressure == PRESSURES[0]:
         options["pressure"] = None
-    made = slicewise.design(bone, [lesion], **options)
+    made = slicewise.design(bone, [opening], **options)
     (working,) = made.working
     first = round(float(bone.to_voxel(working.frames[0, 0])[0]))
     slices = bone.voxels[first : first + len(working.slices)]
     px = float(bone.spacing[1:].mean())
-    near = ndimage.binary_dilation(lesion.opening.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
+    near = ndimage.binary_dilation(opening.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
     patches = [_filled(result, slices[result.plane], near, 4 / px**2) for result in working.slices]
     return Stack(bone, first, working.slices, np.array(patches))
 

@@ -66,8 +66,8 @@ def tuner(case: Case) -> Tuner:
         From `data_synth.phantom_case`; "tiny" answers within about two seconds, at once where it was before.
     """
     bone, truth = Volume(case.bone, case.affine), Volume(case.implant, case.affine)
-    lesions = opening_search.find(bone)
-    made = lru_cache(maxsize=32)(lambda *values: _measured(bone, truth, lesions, options_of(*values)))
+    openings = opening_search.find(bone)
+    made = lru_cache(maxsize=32)(lambda *values: _measured(bone, truth, openings, options_of(*values)))
     controls = (
         Choice("slices", "slices", SLICES, SLICES[1]),
         Slider("directions", "directions of the fans", 1, 8, 6),
@@ -126,10 +126,10 @@ def options_of(
 Measured = tuple[tuple[float, ...], DistanceMap]
 
 
-def _measured(bone: Volume, truth: Volume, lesions: tuple[Any, ...], options: dict[str, Any]) -> Measured:
+def _measured(bone: Volume, truth: Volume, openings: tuple[Any, ...], options: dict[str, Any]) -> Measured:
     """Measures of one design in the order of `_MEASURES`, and its map of distances."""
-    made = slicewise.design(bone, lesions, **options)
-    check = run.check_truth(made, truth, bone, lesions[0])
+    made = slicewise.design(bone, openings, **options)
+    check = run.check_truth(made, truth, bone, openings[0])
     return measures(made, check), distance_map(made, check.prosthesis, 0)
 
 
