@@ -14,7 +14,7 @@ from cranio_nb.stages.deformable_model import PAPER_PRESSURE, inflate, tangent_p
 from cranio_nb.teaching import build, check
 from cranio_nb.teaching.exercises import EXERCISES
 
-SOURCES = sorted((Path(__file__).parents[1] / "notebooks" / "src").glob("*.py"))
+SOURCES = sorted((Path(__file__).parents[2] / "notebooks" / "src").glob("*.py"))
 LIBRARY = {
     "np": np,
     "ndimage": ndimage,

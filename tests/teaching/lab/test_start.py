@@ -77,7 +77,7 @@ def test_opening_the_lab_is_not_loaded_with_the_command_line():
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.split() == ["False"] * 2
 
 
-BINDER = Path(__file__).parents[1] / "binder"
+BINDER = Path(__file__).parents[3] / "binder"
 
 
 @pytest.mark.skipif(not BINDER.is_dir(), reason="only a checkout has Binder's files")

@@ -15,7 +15,7 @@ from cranio_nb.teaching import build
 from cranio_nb.teaching.exercises import EXERCISES
 from cranio_nb.teaching.web_pages import write_pages
 
-FOLDER = Path(__file__).parents[1] / "notebooks"
+FOLDER = Path(__file__).parents[2] / "notebooks"
 SOURCES = sorted((FOLDER / "src").glob("*.py"))
 NAMES = [path.stem for path in SOURCES]
 PLACE = re.compile(r"(?<![\w.~])/(home|root|work|tmp|Users|opt|mnt|srv)/\w")
