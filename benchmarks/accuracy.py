@@ -26,7 +26,7 @@ from cranio_nb.evaluation.against_truth import against, table3, true_prosthesis
 from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES
 from cranio_nb.methods import slicewise, thin_plate
 from cranio_nb.opening import Opening
-from cranio_nb.pipeline.run import design_for
+from cranio_nb.pipeline.run import design_inside
 from cranio_nb.pipeline.trial import contenders
 from cranio_nb.prosthesis import DistanceStats, Prosthesis
 from cranio_nb.readers import read_ct
@@ -48,7 +48,7 @@ def phantom(defect: str = "unilateral", seed: int = 1) -> None:
     print(f"\n== Phantom, full (512 x 512 x 68), {defect}: loss in {len(planes)} of {len(case.hu)} slices (paper: 23)")
     for threshold in (BONE_HU, HALF_MAXIMUM):
         bone = segment(Volume(case.hu, case.affine), threshold=threshold)
-        openings = opening_search.find(bone)
+        openings = opening_search.find_openings(bone)
         print(f"\n-- HU >= {threshold:g}; Table 3 in voxels against the truth\n{HEADING}")
         made = phantom_designs(bone, openings, true_prosthesis(truth, bone, openings[0]))
         print("   slicewise:paper against the reflection, as in the paper")
@@ -63,7 +63,7 @@ def phantom_designs(bone: Volume, openings: tuple[Opening, ...], truth: Prosthes
     """Every method of the catalogue with each of its presets, measured: its name -> what it made."""
     made = {}
     for one in contenders():
-        design = made[one.name] = design_for(bone, openings, one.method, one.preset, one.options)
+        design = made[one.name] = design_inside(bone, openings, one.method, one.preset, one.options)
         seen = against(design, truth, bone)
         print_distances(one.name, seen.table3, f"   {seen.score.dice:.3f}  {seen.score.hd95:5.2f}")
     return made
@@ -98,7 +98,7 @@ def mirror(case: Any, bone: Volume) -> Volume:
     known = (columns >= 0) & (columns < bone.shape[2])
     flipped = np.zeros(bone.shape, bool)
     flipped[:, :, known] = bone.voxels[:, :, columns[known]]
-    opening = opening_search.find(bone)[0].sheet.voxels
+    opening = opening_search.find_openings(bone)[0].sheet.voxels
     near = ndimage.binary_dilation(opening, np.ones((3, 13, 13)))
     return bone.with_voxels(
         prosthesis_volume.main_piece(ndimage.binary_opening(flipped & ~bone.voxels & near), opening)

@@ -29,7 +29,7 @@ from cranio_nb.methods.catalogue import METHODS, check_options, default_options
 from cranio_nb.pipeline.compare import MEASURES, Reference, measure
 from cranio_nb.pipeline.trial import Attempt, Contender, attempt_apart, contenders
 from cranio_nb.stages.segmentation import segment
-from cranio_nb.vault.opening_search import find
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 
 KEY = ("case", "contender", "options", "version")
@@ -113,7 +113,7 @@ def _work(case: Case, left: Sequence[Contender], path: Path, head: Sequence[str]
     try:
         bone, truth = case.load(*case.arguments)
         bone = segment(bone)
-        openings = find(bone)
+        openings = find_openings(bone)
         reference = Reference.of(truth, bone, openings[0])
     except ValueError as error:
         code = error.code if isinstance(error, CranioError) else "NoCase"

@@ -19,7 +19,7 @@ from skullfix import load
 
 from cranio_nb.pipeline.trial import Contender, attempt_apart, contenders
 from cranio_nb.stages.segmentation import segment
-from cranio_nb.vault.opening_search import find
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
 
@@ -37,7 +37,7 @@ def measure(name: str, bone: Volume, asked: tuple[Contender, ...]) -> None:
     """A line for each contender."""
     began = time.perf_counter()
     bone = segment(bone)
-    openings = find(bone)
+    openings = find_openings(bone)
     spacing = " x ".join(f"{s:.2f}" for s in bone.spacing[::-1])
     shape = " x ".join(map(str, bone.shape[::-1]))
     print(f"\n== {name}: {shape} voxels of {spacing} mm; bone and openings {time.perf_counter() - began:.1f} s")

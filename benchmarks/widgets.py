@@ -81,7 +81,7 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     """Name and times of each update."""
     case = phantom_case(size)
     ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
-    openings = opening_search.find(bone)
+    openings = opening_search.find_openings(bone)
     one, px = openings[0], float(bone.spacing[1])
     plane = sum(one.planes) // 2
     near = list(range(plane - 4, plane + 5))

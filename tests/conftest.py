@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.opening import Opening
-from cranio_nb.vault.opening_search import find
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case
 
@@ -46,7 +46,7 @@ def skull(phantom) -> Callable[..., Volume]:
 @pytest.fixture(scope="session")
 def openings(skull) -> Callable[..., tuple[Opening, ...]]:
     """`openings(defect, seed)`: the openings found in `skull(defect, seed)`, once."""
-    return cache(lambda defect="unilateral", seed=0: find(skull(defect, seed)))
+    return cache(lambda defect="unilateral", seed=0: find_openings(skull(defect, seed)))
 
 
 @pytest.fixture(scope="session")

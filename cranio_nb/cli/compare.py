@@ -51,7 +51,7 @@ def compare(
       cranio-nb compare skull.nii.gz --mask --method slicewise --method slicewise:paper
     """
     from ..output.comparison_page import FILES, write_comparison
-    from ..output.design_folder import check_folder, staged
+    from ..output.staging import check_folder, staged
     from ..pipeline.compare import compare as run_all
     from ..pipeline.run import prepare
     from ..pipeline.trial import contenders

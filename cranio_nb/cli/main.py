@@ -105,11 +105,12 @@ def demo(out: Path, size: str) -> None:
     from data_synth import phantom_case
     from data_synth.files import write_case
 
-    from ..output.design_folder import check_folder, staged, write_outputs
+    from ..output.design_folder import FILES, write_outputs
+    from ..output.staging import check_folder, staged
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
-    check_folder(out)
+    check_folder(out, FILES)
     _check_case_folder(out)
     with progress_bar() as tell, staged(out) as part:
         tell("synthetic CT", 0.0)
@@ -140,7 +141,7 @@ def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, a
     from data_synth import DEFECTS, phantom_case
     from data_synth.files import write_case
 
-    from ..output.design_folder import check_folder, staged
+    from ..output.staging import check_folder, staged
     from .console import progress_bar
 
     if defect not in DEFECTS:
@@ -179,7 +180,7 @@ def design(
     preset: str,
     params: Path | None,
     learned: Path | None,
-    opening: str | None,
+    planes: str | None,
     truth: Path | None,
     mask: bool,
     threshold: float | None,
@@ -196,15 +197,16 @@ def design(
       cranio-nb design skull.nii.gz --mask --preset paper --out out
       cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
     """
-    from ..output.design_folder import check_folder, staged, write_outputs
+    from ..output.design_folder import FILES, write_outputs
+    from ..output.staging import check_folder, staged
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
-    options, planes = _options(method, params), _planes(opening)
+    options, between = _options(method, params), _planes(planes)
     options |= {} if learned is None else {"prior": str(learned)}
     if out.resolve() == scan.resolve():
         raise click.BadParameter("this is the input; nothing is ever written there.", param_hint="--out")
-    check_folder(out)
+    check_folder(out, FILES)
     with progress_bar() as tell:
         result = run_design(
             scan,
@@ -213,7 +215,7 @@ def design(
             options=options,
             mask=mask or None,
             threshold=threshold,
-            planes=planes,
+            planes=between,
             truth=truth,
             allow=allow,
             progress=tell,
@@ -240,22 +242,23 @@ def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, .
     """
     from ..evaluation.paper_tables import measure_opening
     from ..output.design_folder import load_record
-    from ..pipeline.run import find_openings
+    from ..stages.segmentation import bone_of
+    from ..vault.opening_search import find_openings
     from .console import print_json, print_load, print_openings, progress_bar
 
     with progress_bar() as tell:
         volume, load = read_ct(scan, mask=mask or None, allow=allow, progress=lambda i, n: tell("reading", i / n))
     problem: CranioError | None = None
-    openings: list[OpeningSize] = []
+    sizes: list[OpeningSize] = []
     try:
-        openings = [measure_opening(one) for one in find_openings(volume, threshold)[1]]
+        sizes = [measure_opening(one) for one in find_openings(bone_of(volume, threshold))]
     except CranioError as error:
         problem = error
     if as_json:
-        print_json({"load": load_record(load), "openings": openings, "problem": problem and problem.code})
+        print_json({"load": load_record(load), "openings": sizes, "problem": problem and problem.code})
     else:
         print_load(load)
-        print_openings(openings)
+        print_openings(sizes)
     if problem:
         raise problem
 
@@ -276,13 +279,11 @@ def score(patch: Path, truth: Path, skull: Path, threshold: float | None, as_jso
       cranio-nb score patch.nrrd truth.nrrd --skull skull.nrrd --json
     """
     from ..evaluation import scores
-    from ..stages.segmentation import BONE_HU, segment
+    from ..stages.segmentation import bone_of
     from .console import print_json, print_table
 
-    (made, _), (true, _), (bone, _) = read_ct(patch, mask=True), read_ct(truth, mask=True), read_ct(skull)
-    if bone.voxels.dtype != bool:
-        bone = segment(bone, threshold=BONE_HU if threshold is None else threshold)
-    found = dataclasses.asdict(scores.score(made, true, bone))
+    (made, _), (true, _), (scan, _) = read_ct(patch, mask=True), read_ct(truth, mask=True), read_ct(skull)
+    found = dataclasses.asdict(scores.score(made, true, bone_of(scan, threshold)))
     if as_json:
         print_json(found)
         return

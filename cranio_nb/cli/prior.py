@@ -33,7 +33,7 @@ def learn(folder: Path, out: Path, threshold: float | None) -> None:
     Example:
       cranio-nb prior learn scans/intact --out prior.npz
     """
-    from ..output.design_folder import check_folder
+    from ..output.staging import check_folder
     from ..prior.file import save
     from ..prior.shape_prior import learn as learn_from
     from ..prior.study import intact_skulls, learning_curve, scans_in

@@ -22,11 +22,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InputRefused
 from ..mesh import Mesh
+from ..prosthesis import Prosthesis
+from ..volume import Volume
 from .canvas import BLUE, GREEN, GREY, ORANGE, PURPLE, RGB, SKY, Canvas, rgb_of, round_length
 from .described import Bundle, bundle, encoded_png
 from .figures import colour_scale
 from .front_end import is_local, mode
-from .shading import Solid, render, view_axes
+from .shading import Solid, render, skull_surface, view_axes
 
 MAX_FACES = 150_000
 """Most faces that a browser is given live; a page of its own holds fewer."""
@@ -36,7 +38,35 @@ _WIDTH, _HEIGHT, _BAR = 640, 480, 56  # px of a picture, and of the scale below 
 _NO_PYVISTA = 'Install "cranio-nb[view]" to turn the scene; this is a picture of it.'
 
 
-def show(
+def show(bone: Volume, made: Prosthesis) -> Scene:
+    """Show a skull with what closes its openings.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    made : Prosthesis
+
+    Returns
+    -------
+    Scene
+        Displays itself: a scene to turn where the notebook allows it, else a picture.
+
+    Examples
+    --------
+    >>> from cranio_nb.stages.surface_reconstruction import extract
+    >>> cube = np.zeros((12, 12, 12), bool)
+    >>> cube[4:8, 4:8, 4:8] = True
+    >>> skull, patch = Volume(~cube, np.eye(4)), Volume(cube, np.eye(4))
+    >>> made = Prosthesis(extract(patch), np.zeros(0, np.uint8), patch, "by hand")
+    >>> show(skull, made).line  # doctest: +ELLIPSIS
+    '3-D scene: skull, prosthesis (by hand) (...'
+    """
+    alt = f"The skull in ivory and the prosthesis of the method {made.method} in blue, seen from outside the opening."
+    return show_meshes(skull_surface(bone), made.mesh, alt=alt, labels=("skull", f"prosthesis ({made.method})"))
+
+
+def show_meshes(
     *meshes: Mesh,
     alt: str,
     colours: Sequence[str] | None = None,

@@ -105,7 +105,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    openings = opening_search.find(bone) if openings is None else openings
+    openings = opening_search.find_openings(bone) if openings is None else openings
     made, patch = [], np.zeros(bone.shape, bool)
     for i, one in enumerate(openings):
         tell("hull", 0.9 * i / len(openings))

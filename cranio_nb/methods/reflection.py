@@ -125,7 +125,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    openings = opening_search.find(bone) if openings is None else openings
+    openings = opening_search.find_openings(bone) if openings is None else openings
     tell("symmetry", 0.1)
     plane = symmetry.find(bone, openings[0].head_centre)
     made = []

@@ -161,7 +161,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    openings = opening_search.find(bone) if openings is None else openings
+    openings = opening_search.find_openings(bone) if openings is None else openings
     scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol, "max_iter": max_iter}
     curve = {"n": n_snaxels, "pressure": pressure, "scheme": scheme}
     working: list[SlicedDesign] = []

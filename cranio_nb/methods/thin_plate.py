@@ -136,7 +136,7 @@ def design(
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
     learned = prior_file.load(Path(prior)) if prior else None
-    openings = opening_search.find(bone) if openings is None else openings
+    openings = opening_search.find_openings(bone) if openings is None else openings
     tell("symmetry", 0.1)
     plane, found = _symmetry(bone, openings[0]) if mirror else (None, {"unused": "not asked for"})
     patch = np.zeros(bone.shape, bool)

@@ -5,91 +5,26 @@ Meshes and `design.json` are in world mm, DICOM LPS; the patch stands on the inp
 
 from __future__ import annotations
 
-import os
 import sys
-import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, version
+from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ..errors import CannotWrite
 from ..evaluation.paper_tables import balloon_ranges, count_statuses
+from ..geometry.mesh_check import check_mesh
 from ..implant.workshop import implant_data
-from ..pipeline.run import RunResult, parameters_used
+from ..methods.catalogue import default_options
+from ..pipeline.run import RunResult
+from ..prosthesis import Prosthesis
 from ..readers import LoadReport
 from . import files
+from .staging import check_folder, staged
 
 FILES = ("prosthesis.stl", "patch.nii.gz", "design.json", "report.html")
 """What a run leaves in its folder."""
 _LIBRARIES = ("numpy", "scipy", "scikit-image", "pydicom", "nibabel", "pynrrd", "trimesh", "manifold3d")
-
-
-def check_folder(folder: Path, names: tuple[str, ...] = FILES) -> None:
-    """Refuse, before any work is done, a folder that cannot take the files; nothing is made.
-
-    Raises
-    ------
-    CannotWrite
-        A file is in the way of the folder, a folder in the way of a file, or writing is not allowed.
-    """
-    folder = folder.absolute()
-    there = next(p for p in (folder, *folder.parents) if os.path.lexists(p))
-    if not os.path.isdir(there):
-        raise CannotWrite("CannotWrite", "A file is in the way of the output folder.", "Name another folder.")
-    if not os.access(there, os.W_OK | os.X_OK):
-        raise CannotWrite("CannotWrite", "Writing into the output folder is not allowed.", "Name another folder.")
-    blocked = [name for name in names if os.path.isdir(folder / name)]
-    if blocked:
-        message = f"A folder named {blocked[0]} is in the way of the output file."
-        raise CannotWrite("CannotWrite", message, "Name another folder.")
-
-
-@contextmanager
-def staged(folder: Path) -> Iterator[Path]:
-    """A hidden folder to write into; its contents get their place in `folder` only if all goes well.
-
-    Files of the same names are replaced, each at once; others in `folder` stay. Subfolders of the same names are
-    replaced as a whole.
-
-    Raises
-    ------
-    CannotWrite
-        If the system refuses.
-    """
-    folder = folder.absolute()
-    made: list[Path] = []
-    try:
-        if not folder.exists():
-            made = [p for p in folder.parents if not p.exists()]
-            folder.parent.mkdir(parents=True, exist_ok=True)
-        home = folder if folder.exists() else folder.parent
-        with tempfile.TemporaryDirectory(prefix=".part-", dir=home) as temporary:
-            part = Path(temporary) / "files"
-            part.mkdir()
-            yield part
-            _publish(part, folder)
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CannotWrite("CannotWrite", f"The output could not be written: {reason}.") from error
-    finally:
-        for parent in made:
-            if parent.exists() and not any(parent.iterdir()):
-                parent.rmdir()
-
-
-def _publish(part: Path, folder: Path) -> None:
-    """Move what was written to where it belongs."""
-    if not folder.exists():
-        part.replace(folder)
-        return
-    items = sorted(part.iterdir(), key=lambda p: FILES.index(p.name) if p.name in FILES else -1)
-    for item in items:
-        goal = folder / item.name
-        if goal.is_dir() and not goal.is_symlink():
-            goal.replace(part.parent / f"old-{item.name}")
-        item.replace(goal)
 
 
 def write_outputs(result: RunResult, folder: Path, tell: Callable[[str, float], None] | None = None) -> None:
@@ -122,35 +57,82 @@ def write_outputs(result: RunResult, folder: Path, tell: Callable[[str, float], 
     tell("done", 1.0)
 
 
-def design_record(result: RunResult) -> dict[str, Any]:
-    """What `design.json` says. No text of the input's headers, no path.
+def save(made: Prosthesis, folder: str | PathLike[str], report: LoadReport | None = None) -> list[Path]:
+    """Save a design: its mesh, its voxels and how it was made; all files or none.
+
+    Parameters
+    ----------
+    made : Prosthesis
+    folder : path
+        Made if missing.
+    report : LoadReport, optional
+        Of the scan: with it the voxels stand on the scan's own grid, axis by axis.
+
+    Returns
+    -------
+    list of Path
+        ``prosthesis.stl`` (world mm, LPS), ``patch.nii.gz`` where there are voxels, and ``design.json``.
+
+    Raises
+    ------
+    CannotWrite
+        If the mesh is not a solid, or a file cannot be written; nothing is left behind then.
+    """
+    folder = Path(folder)
+    check_folder(folder, FILES)
+    mesh = check_mesh(made.mesh)
+    with staged(folder) as part:
+        files.write_mesh(made.mesh, part / "prosthesis.stl", n_parts=mesh.n_parts, report=mesh)
+        if made.patch is not None:
+            files.write_nifti(made.patch, part / "patch.nii.gz", order=None if report is None else report.order)
+        files.write_json(
+            part / "design.json",
+            made_record(made) | {"mesh": mesh, "load": None if report is None else load_record(report)},
+        )
+        names = [path.name for path in part.iterdir()]
+    return [folder / name for name in FILES if name in names]
+
+
+def made_record(made: Prosthesis) -> dict[str, Any]:
+    """What `design.json` says of the design itself.
 
     Returns
     -------
     dict
-        JSON-able after `export.jsonable`.
+        JSON-able after `files.jsonable`.
     """
-    made, load = result.prosthesis, result.case.load
     slices = made.record.get("slices", [])
     return {
         "cranio_nb": version("cranio-nb"),
         "not_for_clinical_use": True,
         "world": "DICOM LPS, mm",
-        "load": load_record(load),
-        "bone_threshold_hu": result.case.threshold,
-        "openings": result.sizes,
         "method": made.method,
-        "preset": result.preset,
-        "parameters": parameters_used(result),
+        "parameters": default_options(made.method) | made.parameters,
         "slices": slices,
         "slice_counts": count_statuses(slices),
         "balloons": balloon_ranges(slices),
+        "implant": implant_data(made.mesh),
+        "versions": versions(),
+    }
+
+
+def design_record(result: RunResult) -> dict[str, Any]:
+    """What `design.json` says of a run. No text of the input's headers, no path.
+
+    Returns
+    -------
+    dict
+        JSON-able after `files.jsonable`.
+    """
+    return made_record(result.prosthesis) | {
+        "load": load_record(result.case.load),
+        "bone_threshold_hu": result.case.threshold,
+        "openings": result.sizes,
+        "preset": result.preset,
         "findings": result.findings,
         "measures": measures(result),
         "mesh": result.mesh,
-        "implant": implant_data(made.mesh),
         "seconds": result.seconds,
-        "versions": versions(),
     }
 
 

@@ -16,12 +16,13 @@ from ..evaluation.against_truth import TruthCheck, check_truth
 from ..evaluation.paper_tables import OpeningSize, count_statuses, measure_opening, not_converged
 from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
-from ..methods.catalogue import PRESETS, check_options, default_options, method_module
+from ..methods.catalogue import default_options
+from ..methods.design import check_request, design
 from ..opening import Opening
 from ..prosthesis import RIM, Prosthesis
 from ..readers import Finding, LoadReport, read_ct
-from ..stages.segmentation import BONE_HU, segment
-from ..vault import opening_search
+from ..stages.segmentation import bone_of, threshold_of
+from ..vault.opening_search import find_openings
 from ..volume import Volume, same_grid
 
 Progress = Callable[[str, float], None]
@@ -142,7 +143,7 @@ def run_design(
     tell = progress or (lambda step, done: None)
     case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=tell)
     clock = _Clock(case.seconds)
-    made = design_for(
+    made = design_inside(
         case.bone, case.openings, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done)
     )
     clock.lap("design")
@@ -174,31 +175,11 @@ def prepare(
     known = None if truth is None else read_truth(truth, scan)
     clock.lap("read")
     tell("bone", 0.3)
-    bone, openings, threshold = find_openings(scan, threshold)
-    openings = openings if planes is None else within_planes(openings, planes)
+    bone = bone_of(scan, threshold)
+    openings = find_openings(bone) if planes is None else within_planes(find_openings(bone), planes)
     _check_room([one.sheet for one in openings], "The opening of the skull")
     clock.lap("bone and openings")
-    return Prepared(load, bone, openings, threshold, known, clock.seconds)
-
-
-def find_openings(scan: Volume, threshold: float | None = None) -> tuple[Volume, tuple[Opening, ...], float | None]:
-    """Bone mask, openings (largest first) and the threshold used (None for a mask).
-
-    Parameters
-    ----------
-    scan : Volume
-        HU, or a bool mask.
-    threshold : float, optional
-        Lowest HU of bone.
-    """
-    if scan.voxels.dtype == bool:
-        if threshold is not None:
-            raise InputRefused("ThresholdOfMask", "A bone mask has no HU to set a threshold on.", "Leave it out.")
-        bone = segment(scan)
-    else:
-        threshold = BONE_HU if threshold is None else threshold
-        bone = segment(scan, threshold=threshold)
-    return bone, opening_search.find(bone), threshold
+    return Prepared(load, bone, openings, threshold_of(scan, threshold), known, clock.seconds)
 
 
 def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tuple[Opening, ...]:
@@ -228,15 +209,6 @@ def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tup
     return tuple(parts)
 
 
-def check_request(method: str, preset: str, options: dict[str, Any]) -> None:
-    """Refuse a request that no input could serve, before anything is read."""
-    if preset not in PRESETS:
-        raise InputRefused("UnknownPreset", f"There is no preset named {preset!r}.", f"Known are {', '.join(PRESETS)}.")
-    if preset == "paper" and not hasattr(method_module(method), "paper_options"):
-        raise InputRefused("UnknownPreset", f"The method {method} has no preset of the paper.", "Use the default.")
-    check_options(method, options)
-
-
 def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
     """Read the mask of the missing bone that belongs to a scan.
 
@@ -254,7 +226,7 @@ def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
     return truth
 
 
-def design_for(
+def design_inside(
     bone: Volume,
     openings: tuple[Opening, ...],
     method: str,
@@ -262,16 +234,8 @@ def design_for(
     options: dict[str, Any],
     progress: Progress | None = None,
 ) -> Prosthesis:
-    """Design by a method's name, with options that differ from a preset.
-
-    Raises
-    ------
-    InputRefused, NoOpening
-        Where the method refuses, or its prosthesis reaches the edge of the image.
-    """
-    module = method_module(method)
-    start = module.paper_options(bone) if preset == "paper" else {}
-    made: Prosthesis = module.design(bone, openings, progress=progress, **(start | options))
+    """`methods.design`, refused where the prosthesis reaches the edge of the image (``OpeningLeavesImage``)."""
+    made = design(bone, openings, method=method, preset=preset, progress=progress, **options)
     _check_room([] if made.patch is None else [made.patch], "The prosthesis")
     return made
 

@@ -24,7 +24,7 @@ from ..methods.catalogue import METHODS, method_module
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..volume import Volume
-from .run import check_request, design_for
+from .run import check_request, design_inside
 
 STATUSES = ("done", "refused", "no patch", "broken")
 """How a trial ended: with a prosthesis; with a refusal of the method to serve this input; without anything bridged,
@@ -118,7 +118,7 @@ def attempt(bone: Volume, openings: Sequence[Opening], contender: Contender) -> 
     made, status, code, message = None, "done", "", ""
     began, cpu = time.perf_counter(), time.process_time()
     try:
-        made = design_for(bone, tuple(openings), contender.method, contender.preset, contender.options)
+        made = design_inside(bone, tuple(openings), contender.method, contender.preset, contender.options)
     except CranioError as error:
         status, code, message = _status(error), error.code, str(error)
     except Exception as error:  # a rival's fault is a row of the table, not the end of it

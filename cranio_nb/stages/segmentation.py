@@ -60,6 +60,39 @@ def segment(
     return ct.with_voxels(out)
 
 
+def bone_of(scan: Volume, threshold: float | None = None) -> Volume:
+    """The skull of a scan, whether that is a CT or a bone mask already: what every design and measure starts from.
+
+    Parameters
+    ----------
+    scan : Volume
+        HU, or a bool mask, shape (P, R, C).
+    threshold : float, optional
+        Lowest HU of bone; `BONE_HU` when not given.
+
+    Returns
+    -------
+    Volume
+        Bool, on the grid of `scan`.
+
+    Raises
+    ------
+    InputRefused
+        ``ThresholdOfMask`` when a mask comes with a threshold; ``NoBone``.
+    """
+    used = threshold_of(scan, threshold)
+    return segment(scan) if used is None else segment(scan, threshold=used)
+
+
+def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
+    """The threshold in HU that `bone_of` uses; None for a mask. Parameters and errors as there."""
+    if scan.voxels.dtype != bool:
+        return BONE_HU if threshold is None else threshold
+    if threshold is not None:
+        raise InputRefused("ThresholdOfMask", "A bone mask has no HU to set a threshold on.", "Leave it out.")
+    return None
+
+
 def threshold_hu(hu: NDArray, threshold: float, upper: float = np.inf) -> NDArray[np.bool_]:
     """Voxels with threshold <= HU <= upper, shape (P, R, C)."""
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)

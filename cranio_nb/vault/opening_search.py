@@ -53,7 +53,7 @@ class Sky:
     polar: NDArray[np.float64]
 
 
-def find(bone: Volume, *, min_diameter: float = 8.0) -> tuple[Opening, ...]:
+def find_openings(bone: Volume, *, min_diameter: float = 8.0) -> tuple[Opening, ...]:
     """Find every opening of the vault.
 
     Parameters

@@ -1,4 +1,4 @@
-"""The vault around an opening as two radius maps: a bone mask and an opening come in -> a chart goes out, and back again.
+"""The vault around an opening as two radius maps: bone mask and opening in, chart out, and back again.
 
 Frames: chart (v, u), an azimuthal-equidistant map of the directions seen from a point inside the head, about the
 opening's direction; radii in mm along those directions; the world in mm (LPS).

@@ -89,7 +89,7 @@ print(f"{bone.voxels.mean():.1%} of the voxels are bone")
 # We stand inside the head and look out. Where a ray meets no bone, there is an opening.
 
 # %% tags=["nbval-check-output"]
-openings = opening_search.find(bone)
+openings = opening_search.find_openings(bone)
 first, end = openings[0].planes
 print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 
@@ -160,7 +160,7 @@ if case.truth is not None:
 # %% tags=["nbval-check-output"]
 skull = shading.skull_surface(bone)
 alt = "A pale skull seen from its side; the hole is closed by the prosthesis, in blue."
-scene3d.show(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
+scene3d.show_meshes(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
 
 # %% [markdown]
 # *In a live notebook you can turn this head with the mouse.* Its top is flat because the slices are 2.5 mm apart: the

@@ -120,7 +120,7 @@ if case.phantom is not None:
 
 # %%
 plane = max(
-    opening_search.find(masks[2])[0].planes[0] - 4, 0
+    opening_search.find_openings(masks[2])[0].planes[0] - 4, 0
 )  # below the hole the ring is closed
 raw = segmentation.threshold_hu(ct.voxels, 700)
 filled = segmentation.fill_holes(raw, max_hole=60 / px**2)  # 60 mm2, in pixels

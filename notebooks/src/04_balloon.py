@@ -55,7 +55,7 @@ from cranio_nb.vault import opening_search
 # %%
 case = classroom.load("class")
 bone = segmentation.segment(case.ct)
-opening = opening_search.find(bone)[0]
+opening = opening_search.find_openings(bone)[0]
 plane = classroom.bridged_plane(bone, opening, skip=3, reach=10)
 inside = bone.to_voxel(opening.head_centre)[1:]
 

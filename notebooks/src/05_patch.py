@@ -47,7 +47,7 @@ from cranio_nb.vault import opening_search
 # %%
 case = classroom.load("class")
 bone, px = segmentation.segment(case.ct), case.px
-openings = opening_search.find(bone)
+openings = opening_search.find_openings(bone)
 opening = openings[0]
 
 # %% [markdown]

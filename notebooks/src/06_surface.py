@@ -53,7 +53,7 @@ from cranio_nb.vault import opening_search
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
 bone = segmentation.segment(case.ct)
-openings = opening_search.find(bone)
+openings = opening_search.find_openings(bone)
 patch = slicewise.design(bone, openings).patch
 print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 

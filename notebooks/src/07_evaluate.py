@@ -46,7 +46,7 @@ from cranio_nb.volume import Volume
 # %%
 case = classroom.load("class", needs_truth=True)
 bone, truth = segmentation.segment(case.ct), case.truth
-openings = opening_search.find(bone)
+openings = opening_search.find_openings(bone)
 made = slicewise.design(bone, openings)
 seen = check_truth(made, truth, bone, openings[0])
 

@@ -51,7 +51,7 @@ from cranio_nb.vault import opening_search, symmetry
 # %%
 case = classroom.load("class", needs_truth=True)
 bone, px = segmentation.segment(case.ct), case.px
-openings = opening_search.find(bone)
+openings = opening_search.find_openings(bone)
 true = measure.true_prosthesis(case.truth, bone, openings[0])
 
 # %% [markdown]

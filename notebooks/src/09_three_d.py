@@ -53,7 +53,7 @@ from cranio_nb.vault import opening_search, radius_map
 # %%
 case = classroom.load("class", needs_truth=True)
 bone = segmentation.segment(case.ct)
-openings = opening_search.find(bone)
+openings = opening_search.find_openings(bone)
 true = measure.true_prosthesis(case.truth, bone, openings[0])
 
 # %% [markdown]
@@ -258,7 +258,7 @@ wide = classroom.load("class", defect="large", needs_truth=True)
 methods = {"slice method": slicewise, "thin plate": thin_plate, "D-NURBS": dnurbs}
 made = {name: method.design(bone, openings) for name, method in methods.items()}
 skull = segmentation.segment(wide.ct)
-largest = opening_search.find(skull)
+largest = opening_search.find_openings(skull)
 over = {name: method.design(skull, largest, smooth=False) for name, method in methods.items()}
 
 # %% tags=["nbval-check-output"]

@@ -58,7 +58,7 @@ from data_synth import phantom_case
 # %%
 case = classroom.load("class", needs_truth=True)
 bone, px = segmentation.segment(case.ct), case.px
-openings = opening_search.find(bone)
+openings = opening_search.find_openings(bone)
 first = max(openings[0].planes[0] - 2, 0)  # plane of the first slice: two below the hole
 paper = slicewise.design(bone, openings, **slicewise.paper_options(bone))
 ours = slicewise.design(bone, openings)

@@ -251,7 +251,7 @@ def test_planes_without_an_opening(home, tmp_path):
 
 def test_truth_on_another_grid_is_refused_before_any_work(case, home, tmp_path, monkeypatch):
     write_nifti(Volume(case.implant[:-1], case.affine), tmp_path / "truth.nii.gz")
-    monkeypatch.setattr(run, "find_openings", lambda *a: pytest.fail("work was done"))
+    monkeypatch.setattr(run, "bone_of", lambda *a: pytest.fail("work was done"))
     arguments = ("--truth", tmp_path / "truth.nii.gz", "--out", tmp_path / "out")
     assert_refused(cranio("design", home / "ct", *arguments), 3, "truth")
     assert not (tmp_path / "out").exists()
@@ -288,7 +288,7 @@ def test_a_failure_while_writing_leaves_nothing(home, paper, tmp_path, monkeypat
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
-    monkeypatch.setattr(design_folder.export, "write_text", full_disk)
+    monkeypatch.setattr(design_folder.files, "write_text", full_disk)
     assert_refused(cranio("design", home / "ct", "--out", tmp_path / "new" / "out"), 5, "No space left")
     assert list(tmp_path.iterdir()) == []
     (tmp_path / "old").mkdir()

@@ -200,7 +200,8 @@ def test_view_names_the_patients_sides():
 
 
 def test_pictures_leave_no_global_state():
-    code = "import sys, cranio_nb.plot, cranio_nb.report; sys.exit('matplotlib.pyplot' in sys.modules)"
+    modules = "cranio_nb.drawing.figures, cranio_nb.output.design_page"
+    code = f"import sys, {modules}; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], timeout=60, check=False).returncode == 0
 
 

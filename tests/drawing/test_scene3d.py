@@ -30,7 +30,7 @@ def static(monkeypatch):
 
 
 def test_a_static_scene_is_a_picture_with_words(static):
-    scene = scene3d.show(cube(40), cube(10, (30, 0, 0)), labels=["large", "small"], alt=ALT)
+    scene = scene3d.show_meshes(cube(40), cube(10, (30, 0, 0)), labels=["large", "small"], alt=ALT)
     data, metadata = scene._repr_mimebundle_()
     assert set(data) == {"image/png", "text/plain"} and metadata["image/png"]["alt"] == ALT
     assert data["text/plain"] == "3-D scene: large, small (24 triangles)."
@@ -38,7 +38,7 @@ def test_a_static_scene_is_a_picture_with_words(static):
 
 
 def test_a_face_covers_as_many_pixels_as_its_size_says(static):
-    scene = scene3d.show(cube(40), alt=ALT, towards=(0, -1, 0))
+    scene = scene3d.show_meshes(cube(40), alt=ALT, towards=(0, -1, 0))
     blue = np.array(rgb_of(BLUE), float)
     share = scene.picture @ blue / np.linalg.norm(scene.picture, axis=2).clip(1) / np.linalg.norm(blue)
     rows, cols = np.nonzero(share > 0.995)
@@ -46,13 +46,13 @@ def test_a_face_covers_as_many_pixels_as_its_size_says(static):
 
 
 def test_the_last_mesh_is_seen_in_front(static):
-    scene = scene3d.show(cube(40), cube(10, (30, 0, 0)), alt=ALT)
+    scene = scene3d.show_meshes(cube(40), cube(10, (30, 0, 0)), alt=ALT)
     assert scene.towards @ [1, 0, 0] > 0.9
 
 
 def test_scalars_run_from_dark_to_yellow(static):
     mesh = cube(40)
-    scene = scene3d.show(mesh, alt=ALT, scalars=[mesh.vertices[:, 0] + 20], towards=(0, -1, 0))
+    scene = scene3d.show_meshes(mesh, alt=ALT, scalars=[mesh.vertices[:, 0] + 20], towards=(0, -1, 0))
     body = scene.picture[150:350]
     left, right = body[:, 140].mean(axis=0), body[:, 500].mean(axis=0)
     assert left[2] > left[0] and right[0] > right[2] + 60
@@ -61,18 +61,18 @@ def test_scalars_run_from_dark_to_yellow(static):
 @pytest.mark.parametrize("wrong", [{"colours": [BLUE]}, {"labels": ["a"]}, {"scalars": [np.zeros(3), None]}])
 def test_lists_that_do_not_fit_are_refused(wrong):
     with pytest.raises(InputRefused):
-        scene3d.show(cube(40), cube(10), alt=ALT, **wrong)
+        scene3d.show_meshes(cube(40), cube(10), alt=ALT, **wrong)
 
 
 def test_nothing_to_show_is_refused():
     with pytest.raises(InputRefused, match="no mesh"):
-        scene3d.show(Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)), alt=ALT)
+        scene3d.show_meshes(Mesh(np.zeros((0, 3)), np.zeros((0, 3), int)), alt=ALT)
 
 
 def test_without_pyvista_there_is_a_picture_and_a_sentence(monkeypatch):
     monkeypatch.setenv("CRANIO_NB_MODE", "widget")
     monkeypatch.setattr(scene3d, "find_spec", lambda name: None)
-    data, _ = scene3d.show(cube(40), alt=ALT)._repr_mimebundle_()
+    data, _ = scene3d.show_meshes(cube(40), alt=ALT)._repr_mimebundle_()
     assert set(data) == {"image/png", "text/plain"} and "cranio-nb[view]" in data["text/plain"]
 
 
@@ -92,15 +92,15 @@ def test_a_thinned_sphere_keeps_to_its_radius(max_faces):
 
 REMOTE = """
 import numpy as np, sys
-from cranio_nb import view3d
+from cranio_nb.drawing import scene3d
 from cranio_nb.mesh import Mesh
 n = 400
 r, c = np.mgrid[0:n, 0:n]
 points = np.column_stack([r.ravel(), c.ravel(), 20 * np.sin(r.ravel() / 30)]).astype(float)
 at = (r[:-1, :-1] * n + c[:-1, :-1]).ravel()
 faces = np.concatenate([np.column_stack([at, at + 1, at + n]), np.column_stack([at + 1, at + n + 1, at + n])])
-scene = view3d.show(Mesh(points, faces), alt="Waves <&>.")
-assert view3d.plotter(scene).meshes[0].n_cells <= view3d.MAX_FACES
+scene = scene3d.show_meshes(Mesh(points, faces), alt="Waves <&>.")
+assert scene3d.plotter(scene).meshes[0].n_cells <= scene3d.MAX_FACES
 data, _ = scene._repr_mimebundle_()
 assert data["text/html"].startswith('<iframe title="Waves &lt;&amp;&gt;."') and "image/png" in data
 print(len(data["text/html"]))

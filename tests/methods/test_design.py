@@ -17,7 +17,7 @@ from cranio_nb.methods import hull, reflection, slicewise, thin_plate
 from cranio_nb.methods.dnurbs import method as dnurbs
 from cranio_nb.methods.you import method as you
 from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
-from cranio_nb.vault.opening_search import find
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume, same_grid
 from data_synth import phantom_case, scan
 
@@ -184,7 +184,7 @@ def test_a_whole_skull_needs_none(method, phantom):
 def test_two_holes_get_the_union_of_their_patches(method):
     case = phantom_case("tiny", "bilateral", 0, diameter=24.0)
     bone = Volume(case.bone, case.affine)
-    found = find(bone)
+    found = find_openings(bone)
     assert len(found) == 2
     both = run(method, bone, found)
     single = [run(method, bone, (opening,)).patch.voxels for opening in found]

@@ -10,7 +10,7 @@ from scipy import ndimage
 from cranio_nb.errors import InputRefused
 from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.methods import reflection
-from cranio_nb.vault.opening_search import find
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
 from data_synth.head import SHAPE_TERMS, THICKNESS_TERMS
@@ -110,5 +110,5 @@ def test_the_plane_is_in_the_record(skull, openings):
 def test_two_small_holes_that_are_not_partners_are_both_closed():
     case = phantom_case("tiny", "bilateral", 0, diameter=24.0)
     bone = Volume(case.bone, case.affine)
-    made = reflection.design(bone, find(bone))
+    made = reflection.design(bone, find_openings(bone))
     assert len(made.working) == 2 and all(part.lost < 0.03 for part in made.working)

@@ -17,7 +17,7 @@ from cranio_nb.prior.file import VERSION, load, save
 from cranio_nb.prior.shape_prior import Expected
 from cranio_nb.vault import radius_map as radial
 from cranio_nb.vault import ray_casting
-from cranio_nb.vault.opening_search import find
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 
 N_HEADS = 4
@@ -137,7 +137,7 @@ def test_the_mirror_image_is_foretold_as_the_mirror_image(learned, hole):
 
 def test_a_hole_in_a_head_is_foretold_on_its_chart(learned, phantom, skull):
     case, bone = phantom("round", 0), skull("round", 0)
-    chart = radial.look(bone, find(bone)[0])
+    chart = radial.look(bone, find_openings(bone)[0])
     found = shape_prior.expect(learned, bone, chart)
     whole = Volume(case.bone | case.implant, case.affine)
     inner, outer = ray_casting.cast(whole, chart.eye, chart.directions, np.nan_to_num(found.outer, nan=80.0))
@@ -151,7 +151,7 @@ def test_a_hole_in_a_head_is_foretold_on_its_chart(learned, phantom, skull):
 def test_the_mirrored_head_is_foretold_mirrored(learned, skull):
     bone = skull("round", 0)
     twin = mirror_image(bone)
-    charts = [radial.look(one, find(one)[0]) for one in (bone, twin)]
+    charts = [radial.look(one, find_openings(one)[0]) for one in (bone, twin)]
     found = [shape_prior.expect(learned, one, chart) for one, chart in zip((bone, twin), charts, strict=True)]
     middles = [np.nanmean(one.outer[chart.hole]) for one, chart in zip(found, charts, strict=True)]
     assert middles[0] == pytest.approx(middles[1], abs=0.3)

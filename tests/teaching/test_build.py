@@ -39,7 +39,7 @@ def apex(k, n):
     return k * (n - 1) ** 2 / 8
 
 # %% tags=["check", "nbval-check-output"]
-from cranio_nb import check
+from cranio_nb.teaching import check
 check.exercise("4.1", apex)
 
 # %% tags=["expected"]

@@ -7,7 +7,7 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused, NoOpening
-from cranio_nb.vault.opening_search import find, head_centre, look
+from cranio_nb.vault.opening_search import find_openings, head_centre, look
 from cranio_nb.volume import Volume
 from data_synth import DEFECTS, scan
 
@@ -58,7 +58,7 @@ def test_two_openings_are_the_two_found_alone(phantom, openings):
     case, both = phantom("bilateral"), openings("bilateral")
     for _, _, mask, opening in matched(both, case):
         alone = Volume(case.bone | (case.implant & ~mask), case.affine)
-        (single,) = find(alone)
+        (single,) = find_openings(alone)
         np.testing.assert_allclose(single.centre, opening.centre, atol=1.5)
         a, b = single.sheet.voxels, opening.sheet.voxels
         assert 2 * (a & b).sum() / (a.sum() + b.sum()) > 0.9
@@ -69,7 +69,7 @@ def test_a_complete_or_only_dented_skull_has_no_opening(defect, phantom):
     case = phantom(defect)
     for voxels in (case.complete, case.bone) if defect == "partial" else (case.complete,):
         with pytest.raises(NoOpening) as refused:
-            find(Volume(voxels, case.affine))
+            find_openings(Volume(voxels, case.affine))
         assert refused.value.code == "NoOpening"
 
 
@@ -90,13 +90,13 @@ def test_an_opening_that_leaves_the_image_is_refused(defect, axis, keep, phantom
     box = [slice(None)] * 3
     box[axis] = slice(middle) if keep == "low" else slice(middle, None)
     with pytest.raises(InputRefused, match="edge of the image") as refused:
-        find(skull(defect).crop(tuple(box)))
+        find_openings(skull(defect).crop(tuple(box)))
     assert refused.value.code == "OpeningLeavesImage"
 
 
 def test_a_mask_without_bone_is_no_vault():
     with pytest.raises(InputRefused) as refused:
-        find(Volume(np.zeros((40, 64, 64), bool), np.eye(4)))
+        find_openings(Volume(np.zeros((40, 64, 64), bool), np.eye(4)))
     assert refused.value.code == "NoVault"
 
 
@@ -104,7 +104,7 @@ def test_a_slab_of_bone_is_no_vault():
     voxels = np.zeros((40, 64, 64), bool)
     voxels[10:30, 20:40, 20:24] = True
     with pytest.raises(InputRefused, match="60 mm") as refused:
-        find(Volume(voxels, np.eye(4)))
+        find_openings(Volume(voxels, np.eye(4)))
     assert refused.value.code == "NoVault"
 
 
@@ -125,7 +125,7 @@ def rotated(affine, degrees, shift):
 def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, skull, openings):
     bone, (here,) = skull("unilateral"), openings("unilateral")
     there_affine = rotated(bone.affine, degrees, (311.0, -47.5, 905.0))
-    (there,) = find(Volume(bone.voxels, there_affine))
+    (there,) = find_openings(Volume(bone.voxels, there_affine))
     np.testing.assert_array_equal(there.sheet.voxels, here.sheet.voxels)
     move = there_affine @ np.linalg.inv(bone.affine)
     np.testing.assert_allclose(there.centre, move[:3, :3] @ here.centre + move[:3, 3], atol=1e-6)
@@ -135,7 +135,7 @@ def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, sku
 @pytest.mark.parametrize("defect", ["unilateral", "frontal", "vertex"])
 def test_flipping_left_and_right_mirrors_the_opening(defect, skull, openings):
     bone = skull(defect)
-    (one,), (other,) = openings(defect), find(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
+    (one,), (other,) = openings(defect), find_openings(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
     a, b = one.sheet.voxels, other.sheet.voxels[:, :, ::-1]
     thick = np.ones((3, 3, 3), bool)
     assert not (a & ~ndimage.binary_dilation(b, thick)).any()
@@ -148,7 +148,7 @@ def test_air_around_the_head_changes_nothing(skull, openings):
     padded_affine = bone.affine.copy()
     padded_affine[:3, 3] = bone.to_world([-3, -6, -9])
     padded = Volume(np.pad(bone.voxels, ((3, 3), (6, 6), (9, 9))), padded_affine)
-    (here,), (there,) = openings("round"), find(padded)
+    (here,), (there,) = openings("round"), find_openings(padded)
     np.testing.assert_allclose(there.head_centre, here.head_centre, atol=2.0)
     np.testing.assert_allclose(there.centre, here.centre, atol=1.0)
 
@@ -161,7 +161,7 @@ def test_a_wider_hole_contains_the_narrower(phantom):
         cutter = case.head.cutters[0]
         sine = diameter / 2 / float(case.head.outer_radius(cutter.axes[2]))
         head = replace(case.head, cutters=(replace(cutter, half_angles=np.full(2, 2 * np.sin(np.arcsin(sine) / 2))),))
-        (opening,) = find(Volume(scan(head, case.affine, case.bone.shape)[1], case.affine))
+        (opening,) = find_openings(Volume(scan(head, case.affine, case.bone.shape)[1], case.affine))
         sheet = opening.sheet.voxels.sum()
         if planes_before:
             assert opening.planes[0] <= planes_before[0] and opening.planes[1] >= planes_before[1]
@@ -171,9 +171,9 @@ def test_a_wider_hole_contains_the_narrower(phantom):
 
 def test_openings_narrower_than_asked_for_are_not_openings(skull):
     bone = skull("burr_hole")  # 12 to 15 mm
-    assert len(find(bone, min_diameter=6.0)) == 1
+    assert len(find_openings(bone, min_diameter=6.0)) == 1
     with pytest.raises(NoOpening):
-        find(bone, min_diameter=25.0)
+        find_openings(bone, min_diameter=25.0)
 
 
 def test_the_eye_lies_on_the_heads_axis_85_mm_under_the_vertex(phantom, skull):
@@ -195,5 +195,5 @@ def test_what_the_eye_sees_is_the_outer_skull(phantom, skull):
 
 def test_the_bone_is_not_modified(phantom, skull):
     before = phantom("unilateral").bone.copy()
-    find(skull("unilateral"))  # its arrays are read-only
+    find_openings(skull("unilateral"))  # its arrays are read-only
     np.testing.assert_array_equal(phantom("unilateral").bone, before)

@@ -122,7 +122,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    openings = opening_search.find(bone) if openings is None else openings
+    openings = opening_search.find_openings(bone) if openings is None else openings
     dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
     plate = {"wavelength": wavelength, "tension": tension, "span": span}
     working, patch = [], np.zeros(bone.shape, bool)

@@ -111,7 +111,7 @@ def design(
         ``TooFewGuides``; ``TangledRim`` when the rim of a hole crosses itself.
     """
     began = time.perf_counter()
-    openings = opening_search.find(bone) if openings is None else openings
+    openings = opening_search.find_openings(bone) if openings is None else openings
     guides = [find_guides(radius_map.look(bone, one), n_guides) for one in openings]
     made = design_from_guides(bone, openings, guides, smooth=smooth, progress=progress)
     options = {"n_guides": n_guides, "smooth": smooth}

@@ -66,7 +66,7 @@ def tuner(case: Case) -> Tuner:
         From `data_synth.phantom_case`; "tiny" answers within about two seconds, at once where it was before.
     """
     bone, truth = Volume(case.bone, case.affine), Volume(case.implant, case.affine)
-    openings = opening_search.find(bone)
+    openings = opening_search.find_openings(bone)
     made = lru_cache(maxsize=32)(lambda *values: _measured(bone, truth, openings, options_of(*values)))
     controls = (
         Choice("slices", "slices", SLICES, SLICES[1]),

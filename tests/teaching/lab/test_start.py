@@ -73,7 +73,8 @@ def test_the_doctor_sees_what_stands_before_the_browser(monkeypatch, mark, name)
 
 
 def test_opening_the_lab_is_not_loaded_with_the_command_line():
-    code = "import sys, cranio_nb.cli; print('cranio_nb.lab' in sys.modules, 'jupyterlab' in sys.modules)"
+    looked_for = ("cranio_nb.teaching.lab.start", "jupyterlab")
+    code = f"import sys, cranio_nb.cli.main; print(*(name in sys.modules for name in {looked_for}))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.split() == ["False"] * 2
 
 
