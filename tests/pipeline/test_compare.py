@@ -18,7 +18,7 @@ from cranio_nb.drawing import figures
 from cranio_nb.errors import CannotWrite, InputRefused, NoOpening
 from cranio_nb.methods import catalogue
 from cranio_nb.output import comparison_page
-from cranio_nb.output.files import write_nifti
+from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.output.staging import staged
 from cranio_nb.pipeline import compare, trial
 from cranio_nb.pipeline.run import prepare
