@@ -17,7 +17,7 @@ from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
 import cranio_nb
-from cranio_nb.cli.doctor import examine
+from cranio_nb.cli.examination import examine
 from cranio_nb.cli.main import main
 
 ROOT = Path(__file__).parent.parent
