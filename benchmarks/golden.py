@@ -11,7 +11,6 @@ checkout names otherwise are given as `--renamed`; a value of another unit is a 
 from __future__ import annotations
 
 import argparse
-import inspect
 import os
 import pickle
 import subprocess
@@ -20,6 +19,7 @@ import tempfile
 from collections.abc import Callable, Mapping
 from functools import partial
 from importlib import import_module
+from importlib.machinery import BuiltinImporter, FrozenImporter, PathFinder
 from pathlib import Path
 from typing import Any
 
@@ -42,18 +42,18 @@ VARIANTS: tuple[tuple[str, str, str, dict[str, Any]], ...] = (
 CASES = (*((defect, *design) for defect in DEFECTS for design in DESIGNS), *VARIANTS)
 """Defect of the tiny phantom, method, preset, options."""
 
-# The names of one thing from the oldest layout to the newest; the newest that is there is taken.
-FIND = ("cranio_nb.lesion:find", "cranio_nb.vault.openings:find", "cranio_nb.vault.openings:find_openings")
-DESIGN = ("cranio_nb.run:design_for", "cranio_nb.pipeline.run:design_for", "cranio_nb.methods.design:design")
+# The names of one thing in the layouts before the package had a face; the first that is there is taken.
+FIND = ("cranio_nb.lesion:find", "cranio_nb.vault.opening_search:find_openings")
+CATALOGUE = ("cranio_nb.catalogue:method_module", "cranio_nb.methods.catalogue:method_module")
 VOLUME = ("cranio_nb.volume:Volume",)
 
 
 def named(places: tuple[str, ...], face: str) -> Any:
-    """A name of the package's face, or else what stands at the last of some places "module:name" that exists."""
+    """A name of the package's face, or else the first of some places "module:name" that exists."""
     package = import_module("cranio_nb")
     if callable(found := getattr(package, face, None)):
         return found
-    for place in reversed(places):
+    for place in places:
         module, _, name = place.partition(":")
         try:
             return getattr(import_module(module), name)
@@ -64,17 +64,18 @@ def named(places: tuple[str, ...], face: str) -> Any:
 
 def designer() -> Callable[..., Any]:
     """`design(bone, openings, method, preset, options)` of the checkout that runs."""
-    design = named(DESIGN, "design")
-    known = inspect.signature(design).parameters
-    if known["method"].kind is not inspect.Parameter.KEYWORD_ONLY:
-        return lambda bone, openings, method, preset, options: design(bone, openings, method, preset, options)
-    if "options" in known and known["options"].kind is not inspect.Parameter.VAR_KEYWORD:
-        return lambda bone, openings, method, preset, options: design(
-            bone, openings, method=method, preset=preset, options=options
+    if callable(face := getattr(import_module("cranio_nb"), "design", None)):
+        return lambda bone, openings, method, preset, options: face(
+            bone, openings, method=method, preset=preset, **options
         )
-    return lambda bone, openings, method, preset, options: design(
-        bone, openings, method=method, preset=preset, **options
-    )
+    method_module = named(CATALOGUE, "design")
+
+    def design(bone: Any, openings: Any, method: str, preset: str, options: dict[str, Any]) -> Any:
+        module = method_module(method)
+        start = module.paper_options(bone) if preset == "paper" else {}
+        return module.design(bone, openings, **(start | options))
+
+    return design
 
 
 def run_all(renamed: Mapping[str, str]) -> dict[str, Found]:
@@ -153,11 +154,23 @@ def start(checkout: Path, renamed: list[str], out: Path) -> subprocess.Popen[byt
 
 def work(checkout: Path, renamed: Mapping[str, str], out: Path) -> None:
     """The task of a process: run every case of a checkout and write what came out."""
+    # an editable install has a finder of its own, which would serve what the checkout does not have
+    sys.meta_path[:] = [BuiltinImporter, FrozenImporter, PathFinder]
+    check_origin(checkout)
+    found = run_all(renamed)
+    check_origin(checkout)
+    out.write_bytes(pickle.dumps(found))
+
+
+def check_origin(checkout: Path) -> None:
+    """Stop where a module of the package or the witness was imported from elsewhere."""
     for package in ("cranio_nb", "data_synth"):
-        found = Path(import_module(package).__file__ or "").resolve()
-        if not found.is_relative_to(checkout):
-            raise SystemExit(f"{package} was imported from {found}, not from {checkout}.")
-    out.write_bytes(pickle.dumps(run_all(renamed)))
+        import_module(package)
+    for name, module in list(sys.modules.items()):
+        if name.split(".")[0] in ("cranio_nb", "data_synth"):
+            path = Path(module.__file__ or "").resolve()
+            if not path.is_relative_to(checkout):
+                raise SystemExit(f"{name} was imported from {path}, not from {checkout}.")
 
 
 def report(other: dict[str, Found], this: dict[str, Found], renamed: Mapping[str, str]) -> int:

@@ -199,7 +199,7 @@ def longest_chain(graph: Graph) -> list[str]:
 
 
 def floors_named(checkout: Path) -> list[str] | None:
-    """The list `FLOORS` of the layers test, lowest first, or None. A floor may be a name or a group of names."""
+    """The list `FLOORS` of the layers test, lowest first, or None; "nouns" are the files beside the folders."""
     path = checkout / "tests" / "test_layers.py"
     for node in ast.parse(path.read_text(encoding="utf-8")).body if path.exists() else []:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "FLOORS":
@@ -207,15 +207,15 @@ def floors_named(checkout: Path) -> list[str] | None:
     return None
 
 
-def upward_imports(graph: Graph, floors: Sequence[str | Sequence[str]]) -> list[str]:
-    """Imports from a lower floor to a higher one."""
-    height = {
-        name.split(".")[0]: n
-        for n, floor in enumerate(floors)
-        for name in ([floor] if isinstance(floor, str) else floor)
-    }
-    pairs = [(name, to) for name in sorted(graph) for to in sorted(graph[name])]
-    return [f"{a} -> {b}" for a, b in pairs if height.get(room_of(a), len(floors)) < height.get(room_of(b), -1)]
+def upward_imports(graph: Graph, floors: Sequence[str]) -> list[str]:
+    """Imports within the package from a lower floor to a higher one; its `__init__` stands above all."""
+
+    def height(name: str) -> int:
+        if name == PACKAGE:
+            return len(floors)
+        return floors.index(room_of(name) if room_of(name) in floors else "nouns")
+
+    return [f"{a} -> {b}" for a in sorted(graph) for b in sorted(graph[a]) if height(a) < height(b)]
 
 
 def method_imports(modules: Mapping[str, Module], graph: Graph) -> list[str]:
@@ -381,7 +381,7 @@ def import_figures(
     graph = import_graph(every)
     rooms = grouped(graph, {name: room_of(name) for name in every if name != PACKAGE})
     chain, floors = longest_chain(rooms), floors_named(checkout)
-    up = None if floors is None else upward_imports({name: graph[name] for name in own}, floors)
+    up = None if floors is None else upward_imports({name: graph[name] & own.keys() for name in own}, floors)
     of_modules, of_rooms, between = (
         circles({n: graph[n] & own.keys() for n in own}),
         circles(rooms),

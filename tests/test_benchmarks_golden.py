@@ -1,6 +1,7 @@
 """The golden comparison notices one bit, and takes nothing identical for different."""
 
 import importlib
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -90,5 +91,6 @@ class TestOutcome:
 
 def test_another_copy_than_the_one_asked_for_is_noticed(tmp_path):
     command = [sys.executable, FOLDER / "golden.py", tmp_path, "--run-to", tmp_path / "out.pickle"]
-    ran = subprocess.run(command, capture_output=True, text=True, check=False)
+    place = os.environ | {"PYTHONPATH": str(FOLDER.parent)}
+    ran = subprocess.run(command, capture_output=True, text=True, check=False, env=place)
     assert ran.returncode == 1 and "not from" in ran.stderr
