@@ -20,16 +20,19 @@ import numpy as np
 from scipy import ndimage
 
 import data_synth
-from cranio_nb import evaluate, fill, lesion, surface
 from cranio_nb.errors import CranioError
+from cranio_nb.evaluation import scores
+from cranio_nb.evaluation.against_truth import against, table3, true_prosthesis
+from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES
 from cranio_nb.methods import slicewise, thin_plate
-from cranio_nb.prosthesis import DistanceStats, Lesion, Prosthesis
+from cranio_nb.opening import Opening
+from cranio_nb.pipeline.run import design_inside
+from cranio_nb.pipeline.trial import contenders
+from cranio_nb.prosthesis import DistanceStats, Prosthesis
 from cranio_nb.readers import read_ct
-from cranio_nb.run import design_for
-from cranio_nb.segment import BONE_HU, segment
-from cranio_nb.tables import PAPER_BALLOONS, PAPER_DISTANCES
-from cranio_nb.trial import contenders
-from cranio_nb.truth import against, table3, true_prosthesis
+from cranio_nb.stages import prosthesis_volume, surface_reconstruction
+from cranio_nb.stages.segmentation import BONE_HU, segment
+from cranio_nb.vault import opening_search
 from cranio_nb.volume import Volume
 
 HALF_MAXIMUM = 620.0
@@ -45,22 +48,22 @@ def phantom(defect: str = "unilateral", seed: int = 1) -> None:
     print(f"\n== Phantom, full (512 x 512 x 68), {defect}: loss in {len(planes)} of {len(case.hu)} slices (paper: 23)")
     for threshold in (BONE_HU, HALF_MAXIMUM):
         bone = segment(Volume(case.hu, case.affine), threshold=threshold)
-        lesions = lesion.find(bone)
+        openings = opening_search.find_openings(bone)
         print(f"\n-- HU >= {threshold:g}; Table 3 in voxels against the truth\n{HEADING}")
-        made = phantom_designs(bone, lesions, true_prosthesis(truth, bone, lesions[0]))
+        made = phantom_designs(bone, openings, true_prosthesis(truth, bone, openings[0]))
         print("   slicewise:paper against the reflection, as in the paper")
-        mirrored = true_prosthesis(mirror(case, bone), bone, lesions[0])
+        mirrored = true_prosthesis(mirror(case, bone), bone, openings[0])
         print_distances("", table3(made["slicewise:paper"], mirrored, bone))
         print_distances("printed in the paper", PAPER_DISTANCES)
         for name in ("slicewise", "slicewise:paper"):
             balloon_tables(name, made[name])
 
 
-def phantom_designs(bone: Volume, lesions: tuple[Lesion, ...], truth: Prosthesis) -> dict[str, Prosthesis]:
+def phantom_designs(bone: Volume, openings: tuple[Opening, ...], truth: Prosthesis) -> dict[str, Prosthesis]:
     """Every method of the catalogue with each of its presets, measured: its name -> what it made."""
     made = {}
     for one in contenders():
-        design = made[one.name] = design_for(bone, lesions, one.method, one.preset, one.options)
+        design = made[one.name] = design_inside(bone, openings, one.method, one.preset, one.options)
         seen = against(design, truth, bone)
         print_distances(one.name, seen.table3, f"   {seen.score.dice:.3f}  {seen.score.hd95:5.2f}")
     return made
@@ -95,9 +98,11 @@ def mirror(case: Any, bone: Volume) -> Volume:
     known = (columns >= 0) & (columns < bone.shape[2])
     flipped = np.zeros(bone.shape, bool)
     flipped[:, :, known] = bone.voxels[:, :, columns[known]]
-    opening = lesion.find(bone)[0].opening.voxels
+    opening = opening_search.find_openings(bone)[0].sheet.voxels
     near = ndimage.binary_dilation(opening, np.ones((3, 13, 13)))
-    return bone.with_voxels(fill.main_piece(ndimage.binary_opening(flipped & ~bone.voxels & near), opening))
+    return bone.with_voxels(
+        prosthesis_volume.main_piece(ndimage.binary_opening(flipped & ~bone.voxels & near), opening)
+    )
 
 
 def skullfix(folder: Path) -> None:
@@ -137,7 +142,7 @@ def scored(
     except CranioError as error:
         return {"name": name, "failed": error.code}
     seconds = time.perf_counter() - began
-    score = evaluate.score(made.patch, truth, bone)
+    score = scores.score(made.patch, truth, bone)
     slices = made.record.get("slices", [])
     why = Counter(s["reason"] for s in slices if s["status"] in ("carried", "skipped"))
     lost = sum(why.values()) / max(len(slices), 1)
@@ -180,7 +185,7 @@ def dryskull(folder: Path) -> None:
 
 def mean_thickness(implant: Volume) -> float:
     """Twice the volume over the surface: the mean thickness of a plate, mm."""
-    mesh = surface.extract(implant)
+    mesh = surface_reconstruction.extract(implant)
     return 2 * mesh.volume / float(mesh.areas.sum())
 
 

@@ -24,12 +24,12 @@ from typing import Any
 import numpy as np
 
 from cranio_nb import __version__
-from cranio_nb.catalogue import METHODS, check_options, default_options
-from cranio_nb.compare import MEASURES, Reference, measure
 from cranio_nb.errors import CranioError
-from cranio_nb.lesion import find
-from cranio_nb.segment import segment
-from cranio_nb.trial import Attempt, Contender, attempt_apart, contenders
+from cranio_nb.methods.catalogue import METHODS, check_options, default_options
+from cranio_nb.pipeline.compare import MEASURES, Reference, measure
+from cranio_nb.pipeline.trial import Attempt, Contender, attempt_apart, contenders
+from cranio_nb.stages.segmentation import segment
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 
 KEY = ("case", "contender", "options", "version")
@@ -113,15 +113,15 @@ def _work(case: Case, left: Sequence[Contender], path: Path, head: Sequence[str]
     try:
         bone, truth = case.load(*case.arguments)
         bone = segment(bone)
-        lesions = find(bone)
-        reference = Reference.of(truth, bone, lesions[0])
+        openings = find_openings(bone)
+        reference = Reference.of(truth, bone, openings[0])
     except ValueError as error:
         code = error.code if isinstance(error, CranioError) else "NoCase"
         for contender in left:
             _append(path, head, case, contender, {"status": "no patch", "code": code, "message": str(error)})
         return
     for contender in left:
-        trial = attempt(bone, lesions, contender)
+        trial = attempt(bone, openings, contender)
         outcome = {"status": trial.status, "code": trial.code, "message": trial.message}
         _append(path, head, case, contender, outcome | measure(trial, bone, reference))
 
@@ -142,7 +142,7 @@ def _identity(contender: Contender) -> tuple[str, str, str]:
 @cache
 def version_of(method: str) -> str:
     """The release, and a digest of the source that a method and the measures load."""
-    modules = [METHODS[method], "cranio_nb.compare", "data_synth"]
+    modules = [METHODS[method], "cranio_nb.pipeline.compare", "data_synth"]
     loaded = subprocess.run([sys.executable, "-c", _CODE, *modules], capture_output=True, text=True, check=True)
     digest = hashlib.sha256()
     for path in loaded.stdout.split("\n"):

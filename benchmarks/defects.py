@@ -22,8 +22,8 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from cranio_nb.compare import MEASURES
-from cranio_nb.plot import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
+from cranio_nb.drawing.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
+from cranio_nb.pipeline.compare import MEASURES
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import Volume
 from data_synth import cut_case

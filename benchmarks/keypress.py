@@ -16,19 +16,19 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "browser"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "helpers"))
 from browser_lab import ARGS, browser_path, run_all, running_lab, write_notebook
 from playwright.sync_api import Locator, sync_playwright
 
 CELLS = (
     """
 import ipywidgets, matplotlib.pyplot as plt
-from cranio_nb import features, lesion, widgets
+from cranio_nb import features, opening, widgets
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 case = phantom_case("{size}")
 ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
-one, px = lesion.find(bone)[0], float(bone.spacing[1])
+one, px = opening.find(bone)[0], float(bone.spacing[1])
 plane = sum(one.planes) // 2
 """,
     """
@@ -39,9 +39,9 @@ ipywidgets.VBox([slider, ipywidgets.interactive_output(draw, {{"plane": slider}}
 """,
     "widgets.ct_viewer(ct)",
     "widgets.threshold(ct)",
-    "widgets.features(bone, plane, opening=one.opening)",
+    "widgets.features(bone, plane, opening=one.sheet)",
     """
-ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.opening.voxels[plane], skip=4.5 / px)
+ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.sheet.voxels[plane], skip=4.5 / px)
 widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels[plane], px=px)
 """,
 )

@@ -4,7 +4,8 @@
 
 The skull is the phantom `data_synth` makes, sampled on 512 x 512 x 240 voxels of 0.45 x 0.45 x 0.71 mm; beside it the
 first case of skullfix/cases, where CRANIO_NB_DATA names the folder of real scans. Each design runs alone, on at most
-two cores, in a process of its own (see `cranio_nb.trial`). Finding bone and openings comes before and is timed apart.
+two cores, in a process of its own (see `cranio_nb.pipeline.trial`). Finding bone and openings comes before and is
+timed apart.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from pathlib import Path
 
 from skullfix import load
 
-from cranio_nb.lesion import find
-from cranio_nb.segment import segment
-from cranio_nb.trial import Contender, attempt_apart, contenders
+from cranio_nb.pipeline.trial import Contender, attempt_apart, contenders
+from cranio_nb.stages.segmentation import segment
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
 
@@ -36,13 +37,13 @@ def measure(name: str, bone: Volume, asked: tuple[Contender, ...]) -> None:
     """A line for each contender."""
     began = time.perf_counter()
     bone = segment(bone)
-    lesions = find(bone)
+    openings = find_openings(bone)
     spacing = " x ".join(f"{s:.2f}" for s in bone.spacing[::-1])
     shape = " x ".join(map(str, bone.shape[::-1]))
     print(f"\n== {name}: {shape} voxels of {spacing} mm; bone and openings {time.perf_counter() - began:.1f} s")
     print(f"   {'method':18s} {'time (s)':>9s} {'CPU (s)':>9s} {'peak memory (MB)':>17s}")
     for contender in asked:
-        trial = attempt_apart(bone, lesions, contender)
+        trial = attempt_apart(bone, openings, contender)
         numbers = f"{trial.seconds:9.1f} {trial.cpu:9.1f} {trial.memory:17.0f}"
         print(f"   {contender.name:18s} {numbers}  {trial.message}", flush=True)
 

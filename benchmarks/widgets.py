@@ -17,8 +17,12 @@ import numpy as np
 
 os.environ["CRANIO_NB_MODE"] = "widget"
 
-from cranio_nb import features, lesion, plot, run, widgets
+from cranio_nb.drawing import figures
 from cranio_nb.methods import slicewise
+from cranio_nb.pipeline import run
+from cranio_nb.stages import feature_extraction
+from cranio_nb.teaching import widgets
+from cranio_nb.vault import opening_search
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -54,21 +58,21 @@ def new_figure(ct: Volume) -> Callable[[int], bytes]:
     """A slice through a new figure each time."""
 
     def draw(i: int) -> bytes:
-        figure, ax = plot.new_figure(512 / plot.DPI, 512 / plot.DPI)
+        figure, ax = figures.new_figure(512 / figures.DPI, 512 / figures.DPI)
         ax.imshow(ct.voxels[i % ct.shape[0]], cmap="gray", vmin=-450, vmax=1050)
-        return plot.png(figure)
+        return figures.png(figure)
 
     return draw
 
 
 def same_figure(ct: Volume) -> Callable[[int], bytes]:
     """A slice through one figure with new data."""
-    figure, ax = plot.new_figure(512 / plot.DPI, 512 / plot.DPI)
+    figure, ax = figures.new_figure(512 / figures.DPI, 512 / figures.DPI)
     image = ax.imshow(ct.voxels[0], cmap="gray", vmin=-450, vmax=1050)
 
     def draw(i: int) -> bytes:
         image.set_data(ct.voxels[i % ct.shape[0]])
-        return plot.png(figure)
+        return figures.png(figure)
 
     return draw
 
@@ -77,8 +81,8 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     """Name and times of each update."""
     case = phantom_case(size)
     ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
-    lesions = lesion.find(bone)
-    one, px = lesions[0], float(bone.spacing[1])
+    openings = opening_search.find_openings(bone)
+    one, px = openings[0], float(bone.spacing[1])
     plane = sum(one.planes) // 2
     near = list(range(plane - 4, plane + 5))
     yield "new matplotlib figure: slice", time_calls(new_figure(ct), repeats)
@@ -88,11 +92,13 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     yield "ct_viewer: window width", measure(viewer, "width", [400, 1500, 2500], repeats)
     yield "threshold: HU", measure(bony, "hu", [200, 300, 400, 500, 600], repeats)
     yield "threshold: slice", measure(bony, "plane", near, repeats)
-    seen = widgets.features(bone, plane, opening=one.opening)
+    seen = widgets.features(bone, plane, opening=one.sheet)
     yield "features: skip", measure(seen, "skip", [1.0, 2.5, 4.0, 5.5], repeats)
     yield "features: reach", measure(seen, "reach", [6.0, 9.0, 12.0, 15.0], repeats)
     yield "features: slice, all new", measure(widgets.features(bone, plane), "plane", list(range(20, 60)), repeats)
-    ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.opening.voxels[plane], skip=4.5 / px)
+    ends, _ = feature_extraction.gap_ends(
+        feature_extraction.slice_features(bone.voxels[plane]), one.sheet.voxels[plane], skip=4.5 / px
+    )
     inside = bone.to_voxel(one.head_centre)[1:]
     ball = widgets.balloon(ends, inside, background=bone.voxels[plane], px=px)
     fresh = np.round(np.linspace(0.0, 0.39, repeats), 3).tolist()
@@ -100,7 +106,7 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     yield "balloon: N", measure(ball, "n", [11, 21, 31, 41], repeats)
     yield "balloon: step (the player)", measure(ball, "step", list(range(5, 60)), repeats)
     yield "patch: slice", measure(widgets.patch(bone, one), "plane", near, repeats)
-    made = slicewise.design(bone, lesions, axial=True)
+    made = slicewise.design(bone, openings, axial=True)
     true = run.check_truth(made, bone.with_voxels(case.implant), bone, one).prosthesis
     shown = widgets.evaluation(made, true)
     yield "evaluation: scale", measure(shown, "top", [0.5, 1.0, 2.0], repeats)

@@ -1,43 +1,83 @@
-"""cranio_nb: from a head CT with a hole in the skull to the prosthesis that closes it.
+"""From a head CT with a hole in the skull to the prosthesis that closes it.
 
 For teaching and research. Not a medical device, not for clinical use.
 
-The rooms, from the ground up; imports go down only, and rooms on one floor do not import each other unless said so.
+>>> import cranio_nb as cn
+>>> from data_synth import phantom_case
+>>> case = phantom_case("tiny", "unilateral", 0)  # a synthetic head; `cn.read_ct("head_ct")` reads your own
+>>> ct, truth = cn.Volume(case.hu, case.affine), cn.Volume(case.implant, case.affine)
+>>> bone = cn.segment(ct, threshold=400)
+>>> openings = cn.find_openings(bone)  # largest first
+>>> made = cn.design(bone, openings, method="thin-plate")
+>>> cn.check_mesh(made.mesh).sound, round(cn.score(made.patch, truth, bone).dice, 1)
+(True, 0.9)
+>>> [path.name for path in cn.save(made, "out")]  # all files or none
+['prosthesis.stl', 'patch.nii.gz', 'design.json']
 
-========  ====================================================================================================
-Nouns     `volume` voxels and where they stand; `curves` plane curves, gap ends, the chord frame; `mesh`
-          triangles; `maps` numbers over rays; `prosthesis` lesion, prosthesis, a row of Table 3; `errors` one sentence
-          and a remedy
-Stages    `readers` scan -> CT; `segment` CT -> bone; `lesion` bone -> openings; `features` slice -> gap ends;
-          `balloon` gap ends -> curves; `fill` curves -> patch; `surface` patch -> mesh; `evaluate` patch and
-          truth -> measures; `fit` and `implant` prosthesis -> what a workshop asks; `export` -> files
-Vault     `casting` rays from inside the head; `chart` the vault as radius maps; `symmetry` its symmetry plane; `rays`
-          gap ends for real skulls; `slicing` planes to cut along
-Learned   `headframe` lays a skull on the mean head; `vaultmap` radius maps on it, and `prior` what those of
-          intact skulls tell about the bone in a hole (both see the vault); `prior_file` keeps it
-Geometry  `nearest`, `crossings`, `mesh_check`: work on triangle meshes that stages share; `tetrahedra` mask -> mesh,
-          `solid` mesh -> voxels, `membrane` rim -> flat fill; `sheet` and `sheet_motion` elastic surfaces
-Methods   `methods.slicewise` the paper; `hull`, `reflection`, `you`, `thin_plate`, `dnurbs` its rivals; every method
-          is `design(bone, lesions, *, options) -> Prosthesis`, which `assembly` puts together from a patch, and
-          `catalogue` knows them by name
-Outside   `run` the pipeline as one call; `trial` a method in a process of its own; `truth`, `compare` methods against
-          the missing bone and each other; `tables`, `render`, `plot`, `report`, `compare_page`, `outputs`, `console`,
-          `doctor`, `prior_study`, `cli`. Only `plot` imports matplotlib
-========  ====================================================================================================
+Names are loaded when they are first used. The folders, each of which imports only what stands above it here:
 
-Data's way: scan -> CT -> bone -> lesion -> [slice: gap ends -> balloon -> fill] -> patch -> mesh -> `Prosthesis`.
+===============  =====================================================================================================
+the files here   the nouns: `errors`, `volume`, `mesh`, `curves`, `opening`, `prosthesis`
+`geometry`       work on triangle meshes; robust fits
+`readers`        scan on disk -> CT in HU
+`stages`         the paper's five: `segmentation`, `feature_extraction`, `deformable_model`, `prosthesis_volume`,
+                 `surface_reconstruction`
+`vault`          the skull seen from inside along rays, which real skulls need beyond the paper
+`prior`          what intact skulls let one predict
+`methods`        the paper's method and its rivals; `design` runs any of them, own ones too
+`evaluation`     against the truth, at the rim, the paper's tables
+`implant`        what a workshop asks
+`drawing`        pictures and 3-D scenes
+`pipeline`       scan -> design, trial, comparison
+`output`         files and pages
+`teaching`       lessons, panels, exercises
+`cli`            the command line
+===============  =====================================================================================================
 
-Frames. Conversions happen only in `Volume`, in `ChordFrame` and in the frames of `slicing`.
+Frames. Conversions happen only in `Volume`, in `ChordFrame` and in the frames of `vault.slicing`.
 
 =====  ===================  =====  ==========================================================================
 voxel  (plane, row, col)    index  planes rise to the top of the head, rows to the back, columns to the left
-slice  (row, col)           px     of a plane of the scan; mm in a plane of `slicing`
+slice  (row, col)           px     of a plane of the scan; mm in a plane of `vault.slicing`
 chord  (along, out)         px     along the line between the two ends of a gap, and out of the head
 world  (x, y, z)            mm     DICOM LPS: x to the patient's left, y to the back, z to the top of the head
 =====  ===================  =====  ==========================================================================
 """
 
-from .readers import read_ct
+from importlib import import_module
+from typing import Any
 
-__all__ = ["__version__", "read_ct"]
 __version__ = "0.1.0"
+
+_HOMES = {
+    "Volume": "volume",
+    "Mesh": "mesh",
+    "Opening": "opening",
+    "Prosthesis": "prosthesis",
+    "CranioError": "errors",
+    "read_ct": "readers",
+    "segment": "stages.segmentation",
+    "find_openings": "vault.opening_search",
+    "design": "methods.design",
+    "add_method": "methods.catalogue",
+    "check_mesh": "geometry.mesh_check",
+    "score": "evaluation.scores",
+    "run_design": "pipeline.run",
+    "prepare": "pipeline.run",
+    "compare": "pipeline.compare",
+    "show": "drawing.scene3d",
+    "save": "output.design_folder",
+}
+
+__all__ = ["__version__", *_HOMES]
+
+
+def __getattr__(name: str) -> Any:
+    """A name of the package's face, from the module it lives in."""
+    if name not in _HOMES:
+        raise AttributeError(f"module 'cranio_nb' has no attribute {name!r}; it has {', '.join(_HOMES)}")
+    return getattr(import_module(f".{_HOMES[name]}", __name__), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *_HOMES})

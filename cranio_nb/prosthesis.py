@@ -1,6 +1,6 @@
-"""What goes into a design and what comes out of it: the lesion, the prosthesis, and a row of the paper's Table 3.
+"""What comes out of a design: the prosthesis, and a row of the paper's Table 3.
 
-Frames: lesions are given in voxel (plane, row, col); meshes in world mm (LPS).
+Frames: the mesh in world mm (LPS), the patch in voxel (plane, row, col).
 """
 
 from __future__ import annotations
@@ -16,40 +16,6 @@ from .volume import Volume
 
 OUTER, INNER, RIM = 0, 1, 2
 """Labels of `Prosthesis.sides`: towards the scalp, towards the brain, against the bone."""
-
-
-@dataclass(frozen=True, eq=False)
-class Lesion:
-    """An opening in the skull.
-
-    Parameters
-    ----------
-    opening : Volume
-        Bool (P, R, C) mask on the bone's grid: a coarse sheet across the hole, where bone is wanted.
-        It shows where the hole is and how far it reaches, not the shape of the missing bone.
-    head_centre : ndarray, shape (3,)
-        World mm of a point inside the cranial cavity, from which the vault is seen.
-    """
-
-    opening: Volume
-    head_centre: NDArray[np.float64]
-
-    @property
-    def planes(self) -> tuple[int, int]:
-        """First plane and one past the last plane the opening spans."""
-        hit = np.flatnonzero(self.opening.voxels.any(axis=(1, 2)))
-        return int(hit[0]), int(hit[-1]) + 1
-
-    @property
-    def centre(self) -> NDArray[np.float64]:
-        """Centre of the opening, shape (3,), world mm."""
-        return self.opening.to_world(np.argwhere(self.opening.voxels).mean(axis=0))
-
-    @property
-    def direction(self) -> NDArray[np.float64]:
-        """Unit vector from the head's centre to the opening, shape (3,), LPS."""
-        towards = self.centre - self.head_centre
-        return towards / np.linalg.norm(towards)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +37,7 @@ class Prosthesis:
     record : dict
         What happened: for slice methods a list ``slices`` of per-slice values, findings, timings. JSON-able.
     working : tuple
-        The method's own intermediate results, one per lesion, for pictures and lessons.
+        The method's own intermediate results, one per opening, for pictures and lessons.
     """
 
     mesh: Mesh

@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from cranio_nb import plot
+from cranio_nb.drawing import figures
+from cranio_nb.drawing.shading import skull_surface
 from cranio_nb.mesh import Mesh
 from cranio_nb.methods.slicewise import SlicedDesign
-from cranio_nb.render import skull_surface
-from cranio_nb.run import RunResult, run_design
+from cranio_nb.pipeline.run import RunResult, run_design
 from data_synth import phantom_case
 from data_synth.files import write_case
 
@@ -26,29 +26,29 @@ def main() -> None:
         write_case(Path(folder), phantom_case("full", "unilateral", 0))
         result = run_design(Path(folder) / "ct")
     OUT.parent.mkdir(exist_ok=True)
-    OUT.write_bytes(plot.png(side_by_side([*views(result), middle_slice(result)])))
+    OUT.write_bytes(figures.png(side_by_side([*views(result), middle_slice(result)])))
 
 
 def views(result: RunResult) -> list[Figure]:
     """The skull with its opening, and closed."""
-    lesion = result.lesions[0]
-    skull = skull_surface(result.bone, float(lesion.head_centre[2]) - 10.0)
-    return [plot.view_figure(skull, mesh, lesion.direction, px=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
+    opening = result.case.openings[0]
+    skull = skull_surface(result.case.bone, float(opening.head_centre[2]) - 10.0)
+    return [figures.view_figure(skull, mesh, opening.direction, px=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
 
 
 def middle_slice(result: RunResult) -> Figure:
     """The middle slice, with the boundaries, their ends and tangents, the curves and the patch."""
     sliced = next(part for part in result.prosthesis.working if isinstance(part, SlicedDesign))
     one = sliced.slices[len(sliced.slices) // 2]
-    return plot.slice_figure(sliced, one, result.bone, result.prosthesis.patch)
+    return figures.slice_figure(sliced, one, result.case.bone, result.prosthesis.patch)
 
 
-def side_by_side(figures: list[Figure]) -> Figure:
+def side_by_side(parts: list[Figure]) -> Figure:
     """Finished figures in a row, each in the middle of its height."""
-    pictures = [pixels(figure) for figure in figures]
+    pictures = [pixels(figure) for figure in parts]
     height = max(len(picture) for picture in pictures)
     row = np.concatenate([centred(picture, height) for picture in pictures], axis=1)
-    figure, ax = plot.new_figure(row.shape[1] / plot.DPI, height / plot.DPI)
+    figure, ax = figures.new_figure(row.shape[1] / figures.DPI, height / figures.DPI)
     ax.imshow(row, interpolation="nearest", aspect="auto")
     return figure
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cranio_nb.lesion import find
-from cranio_nb.prosthesis import Lesion
+from cranio_nb.opening import Opening
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case
 
@@ -44,9 +44,9 @@ def skull(phantom) -> Callable[..., Volume]:
 
 
 @pytest.fixture(scope="session")
-def lesions(skull) -> Callable[..., tuple[Lesion, ...]]:
-    """`lesions(defect, seed)`: the openings found in `skull(defect, seed)`, once."""
-    return cache(lambda defect="unilateral", seed=0: find(skull(defect, seed)))
+def openings(skull) -> Callable[..., tuple[Opening, ...]]:
+    """`openings(defect, seed)`: the openings found in `skull(defect, seed)`, once."""
+    return cache(lambda defect="unilateral", seed=0: find_openings(skull(defect, seed)))
 
 
 @pytest.fixture(scope="session")

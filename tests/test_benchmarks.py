@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cranio_nb.compare import MEASURES
 from cranio_nb.errors import InputRefused
-from cranio_nb.trial import Contender, Trial, attempt
+from cranio_nb.pipeline.compare import MEASURES
+from cranio_nb.pipeline.trial import Contender, Trial, attempt
 from cranio_nb.volume import Volume
 from data_synth import DEFECTS, phantom_case
 
@@ -51,10 +51,10 @@ def counted():
     """An attempt that counts; burr holes are refused."""
     tried = []
 
-    def run(bone, lesions, contender):
+    def run(bone, openings, contender):
         tried.append(contender.name)
         if len(tried) % 2:
-            return attempt(bone, lesions, contender)
+            return attempt(bone, openings, contender)
         return Trial(contender, "refused", None, "TooSmall", "It is too small, or so.", 0.0, 0.0, 0.0)
 
     return run, tried

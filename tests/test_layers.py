@@ -1,4 +1,4 @@
-"""The import rule: nouns know no stage, stages and methods do not know each other, libraries stay where they belong."""
+"""The import rule, read off the folders: imports go down only, siblings are strangers, libraries have owners."""
 
 import ast
 import subprocess
@@ -12,43 +12,38 @@ import cranio_nb
 ROOT = Path(cranio_nb.__file__).parent
 WITNESS = ROOT.parent / "data_synth"
 
-NOUNS = {"errors", "volume", "curves", "maps", "mesh", "prosthesis"}
-MESH_WORK = {"nearest", "crossings", "mesh_check", "tetrahedra", "solid", "membrane"}  # geometry of triangle meshes
-STAGES = {
+FLOORS = [  # a folder imports only what stands above it in this list; the nouns are the files beside the folders
+    "nouns",
+    "geometry",
     "readers",
-    "segment",
-    "lesion",
-    "features",
-    "balloon",
-    "fill",
-    "surface",
-    "evaluate",
-    "export",
+    "stages",
+    "vault",
+    "prior",
+    "methods",
+    "evaluation",
     "implant",
-    "fit",
-}
-# stage 2 for real skulls, and whom each may see
-VAULT = {"casting": set(), "chart": {"casting"}, "symmetry": set(), "rays": set(), "slicing": {"chart", "rays"}}
-SHEETS = {"sheet": set(), "sheet_motion": {"sheet"}}  # elastic surfaces
-LEARNED = {  # from other skulls, and whom each may see
-    "headframe": {"lesion"},
-    "vaultmap": {"headframe", "casting"},
-    "prior": {"headframe", "chart", "vaultmap"},
-    "prior_file": {"headframe", "prior", "vaultmap"},
-}
-ASSEMBLY = {"assembly": {"surface"}}  # the last step of every method
-CORE = NOUNS | MESH_WORK | set(SHEETS) | STAGES | set(VAULT) | set(LEARNED) | set(ASSEMBLY)
-OWNERS = {"matplotlib": {"plot"}, "pyvista": {"view3d"}, "ipywidgets": {"widgets.live"}}
+    "drawing",
+    "pipeline",
+    "output",
+    "teaching",
+    "cli",
+]
+LIGHT = FLOORS[: FLOORS.index("implant") + 1]  # these load no heavy library
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
+OWNERS = {"matplotlib": "drawing.figures", "pyvista": "drawing.scene3d", "ipywidgets": "teaching.widgets.live"}
+SHARED_BY_METHODS = {"catalogue", "assembly"}
 
 
 def module_name(path):
     parts = path.relative_to(ROOT).with_suffix("").parts
-    return ".".join(p for p in parts if p != "__init__") or "cranio_nb"
+    return ".".join(p for p in parts if p != "__init__")
+
+
+MODULES = {module_name(path): path for path in sorted(ROOT.rglob("*.py"))}
 
 
 def imports_of(path):
-    """Dotted names a file imports, also inside functions; those of this package without its name."""
+    """Dotted names a file imports, also inside functions; those of this package as its modules, without its name."""
     package = ("cranio_nb", *path.relative_to(ROOT).parent.parts) if path.is_relative_to(ROOT) else ()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
@@ -59,70 +54,75 @@ def imports_of(path):
             found = [f"{start}.{alias.name}" for alias in node.names]
         else:
             continue
-        yield from (name.removeprefix("cranio_nb.") for name in found)
+        yield from (_module(name) if name.split(".")[0] == "cranio_nb" else name for name in found)
 
 
-MODULES = {module_name(path): path for path in sorted(ROOT.rglob("*.py"))}
-ROOMS = {name: name.split(".")[0] for name in MODULES}
+def _module(name):
+    """The module of this package that an imported name is, or stands in."""
+    inside = name.removeprefix("cranio_nb").removeprefix(".")
+    return inside if inside in MODULES else inside.rpartition(".")[0]
 
 
-def rooms_seen(name):
-    """Rooms of the package that a module imports from, without its own."""
-    known = set(ROOMS.values()) - {"cranio_nb"}
-    return {found.split(".")[0] for found in imports_of(MODULES[name])} & known - {ROOMS[name]}
+def floor(module):
+    """Place of a module in `FLOORS`; the package itself stands above all."""
+    if not module:
+        return len(FLOORS)
+    first = module.split(".")[0]
+    return FLOORS.index(first) if (ROOT / first).is_dir() else 0
 
 
-def allowed(name):
-    room = ROOMS[name]
-    if room in NOUNS:
-        return NOUNS
-    if room in MESH_WORK:
-        return NOUNS | MESH_WORK
-    if room in VAULT:
-        return NOUNS | VAULT[room]
-    if room in SHEETS:
-        return NOUNS | SHEETS[room]
-    if room in LEARNED:
-        return NOUNS | LEARNED[room]
-    if room in ASSEMBLY:
-        return NOUNS | ASSEMBLY[room]
-    if room in STAGES:
-        return NOUNS | MESH_WORK
-    if room == "methods":
-        return CORE
-    return set(ROOMS.values())
+def inner(path):
+    """The modules of this package that a file imports."""
+    return {name for name in imports_of(path) if name in MODULES}
+
+
+def test_the_floors_are_the_folders():
+    folders = {path.name for path in ROOT.iterdir() if path.is_dir() and path.name != "__pycache__"}
+    assert folders == set(FLOORS) - {"nouns"}
+
+
+def test_few_files_lie_beside_the_folders():
+    assert len(list(ROOT.glob("*.py"))) <= 9
 
 
 @pytest.mark.parametrize("name", MODULES)
 def test_imports_go_down_only(name):
-    too_high = rooms_seen(name) - allowed(name)
-    assert not too_high, f"{name} imports {sorted(too_high)}; a new core module states its room at the top of this file"
+    too_high = {other for other in inner(MODULES[name]) if floor(other) > floor(name)}
+    assert not too_high, f"{name} imports {sorted(too_high)}, which stand above it in FLOORS"
+
+
+def test_no_modules_import_each_other_in_a_circle():
+    wanted = {name: inner(path) - {name} for name, path in MODULES.items()}
+    while free := [name for name, needs in wanted.items() if not needs & wanted.keys()]:
+        for name in free:
+            del wanted[name]
+    assert not wanted, "each of these imports another of them, or one that does"
+
+
+def test_stages_do_not_know_each_other():
+    for name, path in MODULES.items():
+        if name.startswith("stages."):
+            assert not {other for other in inner(path) if other.split(".")[0] == "stages"}, name
+
+
+def test_methods_do_not_know_each_other():
+    for name, path in MODULES.items():
+        if name.startswith("methods."):
+            own = name.split(".")[1]
+            others = {other.split(".")[1] for other in inner(path) if other.startswith("methods.")}
+            assert own in SHARED_BY_METHODS or others <= {own} | SHARED_BY_METHODS, name
+
+
+@pytest.mark.parametrize("library", OWNERS)
+def test_a_drawing_library_has_one_owner(library):
+    users = {name for name, path in MODULES.items() if library in {i.split(".")[0] for i in imports_of(path)}}
+    assert users == {OWNERS[library]}
 
 
 def test_the_rule_sees_what_it_judges():
-    assert CORE <= set(ROOMS.values())
-    assert {"curves"} <= rooms_seen("balloon") and {"lesion", "curves"} <= rooms_seen("methods.slicewise")
-    assert "volume" in rooms_seen("readers.dicom")
-
-
-def test_methods_do_not_import_each_other():
-    for name, path in MODULES.items():
-        if name.startswith("methods."):
-            others = {found for found in imports_of(path) if found.split(".")[0] == "methods"}
-            assert not others, name
-
-
-@pytest.mark.parametrize(
-    "library",
-    [
-        "matplotlib",
-        "pyvista",
-        "ipywidgets",
-    ],
-)
-def test_a_drawing_library_has_its_own_module(library):
-    users = {name for name, path in MODULES.items() if library in {i.split(".")[0] for i in imports_of(path)}}
-    assert users <= OWNERS[library]
+    assert "curves" in inner(MODULES["stages.deformable_model"])
+    assert "volume" in inner(MODULES["readers.dicom.read"])
+    assert floor("cli.main") > floor("methods.slicewise") > floor("stages.segmentation") > floor("volume") == 0
 
 
 def test_the_witness_knows_nothing_of_the_package():
@@ -132,9 +132,9 @@ def test_the_witness_knows_nothing_of_the_package():
         assert "cranio_nb" not in path.read_text(), path.name
 
 
-def test_the_core_loads_no_heavy_library():
-    core = [f"cranio_nb.{name}" for name in MODULES if ROOMS[name] in CORE | {"methods"}]
-    code = f"import importlib, sys; [importlib.import_module(m) for m in {core!r}]; print(*sorted(sys.modules))"
+def test_what_computes_loads_no_heavy_library():
+    names = [f"cranio_nb.{name}" for name in MODULES if name and floor(name) < len(LIGHT)]
+    code = f"import importlib, sys; [importlib.import_module(m) for m in {names!r}]; print(*sorted(sys.modules))"
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = {module.split(".")[0] for module in run.stdout.split()}
     assert "scipy" in loaded and "cranio_nb" in loaded

@@ -17,8 +17,8 @@ from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
 import cranio_nb
-from cranio_nb.cli import main
-from cranio_nb.doctor import examine
+from cranio_nb.cli.doctor import examine
+from cranio_nb.cli.main import main
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -113,11 +113,17 @@ class TestDependencies:
         assert {r.name for r in CORE} <= looked_at
 
     def test_packages_and_their_files_are_installed(self):
-        folders = {path.parent for top in ("cranio_nb", "data_synth") for path in (ROOT / top).rglob("__init__.py")}
-        declared = PROJECT["tool"]["setuptools"]["packages"]
-        assert {".".join(folder.relative_to(ROOT).parts) for folder in folders} == set(declared)
-        patterns = PROJECT["tool"]["setuptools"]["package-data"]["cranio_nb"]
-        taken = {path for pattern in patterns for path in (ROOT / "cranio_nb").glob(pattern)}
+        code = [path for top in ("cranio_nb", "data_synth") for path in (ROOT / top).rglob("*.py")]
+        assert all((path.parent / "__init__.py").exists() for path in code)
+        wanted_packages = PROJECT["tool"]["setuptools"]["packages"]["find"]["include"]
+        assert wanted_packages == ["cranio_nb*", "data_synth*"]
+        data = PROJECT["tool"]["setuptools"]["package-data"]
+        taken = {
+            path
+            for package, patterns in data.items()
+            for pattern in patterns
+            for path in (ROOT / package.replace(".", "/")).glob(pattern)
+        }
         extra = {p for p in (ROOT / "cranio_nb").rglob("*") if p.is_file() and "__pycache__" not in p.parts}
         assert {p for p in extra if p.suffix != ".py"} == taken
 
@@ -205,7 +211,7 @@ class TestCitation:
 
     def test_names_the_tool_as_it_is(self):
         assert self.citation["cff-version"] == "1.2.0" and self.citation["authors"] and self.citation["message"]
-        assert self.citation["version"] == cranio_nb.__version__
+        assert self.citation["version"] == cranio_nb.__version__ == version("cranio-nb")
         assert self.citation["license"] == PROJECT["project"]["license"]
         assert f"## [{cranio_nb.__version__}]" in (ROOT / "CHANGELOG.md").read_text()
 

@@ -5,36 +5,37 @@ import pytest
 
 from cranio_nb import errors
 from cranio_nb.mesh import Mesh
-from cranio_nb.prosthesis import INNER, OUTER, RIM, Lesion, Prosthesis
+from cranio_nb.opening import Opening
+from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
 from cranio_nb.volume import Volume
 
 
 @pytest.fixture
-def lesion():
+def opening():
     """A box of opening on planes 2 to 4, on a grid that is unequal, mirrored and far from the origin."""
     affine = np.array([[0, 0, -0.5, 40.0], [0, 0.8, 0, -141.5], [3.0, 0, 0, -862.75], [0, 0, 0, 1.0]])
     voxels = np.zeros((8, 10, 12), bool)
     voxels[2:5, 1:4, 6:9] = True
-    return Lesion(Volume(voxels, affine), np.array([37.0, -139.9, -900.0]))
+    return Opening(Volume(voxels, affine), np.array([37.0, -139.9, -900.0]))
 
 
-def test_planes_of_a_lesion_are_half_open(lesion):
-    assert lesion.planes == (2, 5)
-    assert lesion.opening.voxels[slice(*lesion.planes)].any(axis=(1, 2)).all()
+def test_planes_of_an_opening_are_half_open(opening):
+    assert opening.planes == (2, 5)
+    assert opening.sheet.voxels[slice(*opening.planes)].any(axis=(1, 2)).all()
 
 
-def test_centre_and_direction_of_a_lesion_are_in_the_world(lesion):
-    np.testing.assert_allclose(lesion.centre, [40 - 0.5 * 7, -141.5 + 0.8 * 2, -862.75 + 3 * 3])
+def test_centre_and_direction_of_an_opening_are_in_the_world(opening):
+    np.testing.assert_allclose(opening.centre, [40 - 0.5 * 7, -141.5 + 0.8 * 2, -862.75 + 3 * 3])
     towards = np.array([-0.5, 0.0, 46.25])
-    np.testing.assert_allclose(lesion.direction, towards / np.linalg.norm(towards), atol=1e-12)
+    np.testing.assert_allclose(opening.direction, towards / np.linalg.norm(towards), atol=1e-12)
 
 
-def test_direction_does_not_depend_on_where_the_head_lies(lesion):
+def test_direction_does_not_depend_on_where_the_head_lies(opening):
     shift = np.array([120.0, -35.0, 800.0])
-    affine = lesion.opening.affine.copy()
+    affine = opening.sheet.affine.copy()
     affine[:3, 3] += shift
-    moved = Lesion(Volume(lesion.opening.voxels, affine), lesion.head_centre + shift)
-    np.testing.assert_allclose(moved.direction, lesion.direction, atol=1e-12)
+    moved = Opening(Volume(opening.sheet.voxels, affine), opening.head_centre + shift)
+    np.testing.assert_allclose(moved.direction, opening.direction, atol=1e-12)
 
 
 def test_the_three_sides_share_out_the_surface():

@@ -28,12 +28,14 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
-from .. import chart, fill, lesion
-from ..assembly import assemble
-from ..chart import RadialChart
 from ..errors import NoOpening
-from ..prosthesis import Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import Prosthesis
+from ..stages import prosthesis_volume
+from ..vault import opening_search, radius_map
+from ..vault.radius_map import RadialChart
 from ..volume import Volume
+from .assembly import assemble
 
 _RAYS = 360  # around a slice
 _ISLAND = 4.0  # mm2: smaller pieces of a slice are dropped
@@ -42,11 +44,11 @@ _ABOVE, _BELOW = 20.0, 60.0  # mm above and below the vault around the hole betw
 
 @dataclass(frozen=True, eq=False)
 class HullDesign:
-    """What the method did for one lesion; for pictures and lessons.
+    """What the method did for one opening; for pictures and lessons.
 
     Parameters
     ----------
-    lesion : Lesion
+    opening : Opening
     vault : RadialChart
     outer, inner : ndarray, shape (M, M)
         Radii of the two hulls across the hole in mm, nan elsewhere; all nan where slices were used.
@@ -54,7 +56,7 @@ class HullDesign:
         Of each slice used: plane, status ("hull" or "skipped") and reason; empty in space.
     """
 
-    lesion: Lesion
+    opening: Opening
     vault: RadialChart
     outer: NDArray[np.float64]
     inner: NDArray[np.float64]
@@ -68,7 +70,7 @@ def paper_options(bone: Volume) -> dict[str, Any]:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     axial: bool = False,
     smooth: bool = True,
@@ -80,7 +82,7 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     axial : bool
         Hulls of the slices along the planes of the scan, as the paper; otherwise hulls in space.
@@ -93,20 +95,20 @@ def design(
     -------
     Prosthesis
         With `axial`, `record["slices"]` holds status and reason of every slice. `working` holds a `HullDesign` per
-        lesion.
+        opening.
 
     Raises
     ------
     NoOpening
         When the vault is closed, or no slice of the opening holds a rim for a hull to rest on.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = lesion.find(bone) if lesions is None else lesions
+    openings = opening_search.find_openings(bone) if openings is None else openings
     made, patch = [], np.zeros(bone.shape, bool)
-    for i, one in enumerate(lesions):
-        tell("hull", 0.9 * i / len(lesions))
+    for i, one in enumerate(openings):
+        tell("hull", 0.9 * i / len(openings))
         part, piece = (_by_slices if axial else _in_space)(bone, one)
         made.append(part)
         patch |= piece
@@ -115,17 +117,17 @@ def design(
     tell("surface", 0.9)
     record = {}
     if axial:
-        record["slices"] = [{"lesion": i, **entry} for i, part in enumerate(made) for entry in part.slices]
-    return assemble(patch, bone, lesions, "hull", options, began=began, working=made, record=record)
+        record["slices"] = [{"opening": i, **entry} for i, part in enumerate(made) for entry in part.slices]
+    return assemble(patch, bone, openings, "hull", options, began=began, working=made, record=record)
 
 
-def _in_space(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]]:
-    """The patch of one lesion between the hulls of the vault's two surfaces."""
-    vault = chart.look(bone, one)
+def _in_space(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
+    """The patch of one opening between the hulls of the vault's two surfaces."""
+    vault = radius_map.look(bone, one)
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
-    outer, inner = chart.thickened(vault, outer, inner)
-    piece = chart.voxelise(vault, outer, inner, bone)
-    return HullDesign(one, vault, outer, inner), fill.solid_piece(piece, one.opening, bone)
+    outer, inner = radius_map.thickened(vault, outer, inner)
+    piece = radius_map.voxelise(vault, outer, inner, bone)
+    return HullDesign(one, vault, outer, inner), prosthesis_volume.solid_piece(piece, one.sheet, bone)
 
 
 def _hull_radius(vault: RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -149,12 +151,12 @@ def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[n
     return np.where((length > 1.0) & np.isfinite(length), length, np.nan)
 
 
-def _by_slices(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]]:
-    """The patch of one lesion, slice by slice along the planes of the scan."""
-    vault = chart.look(bone, one)
+def _by_slices(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
+    """The patch of one opening, slice by slice along the planes of the scan."""
+    vault = radius_map.look(bone, one)
     first, end = one.planes
     px = float(bone.spacing[1:].mean())
-    near = ndimage.binary_dilation(one.opening.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
+    near = ndimage.binary_dilation(one.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
     cone = _cone(vault, bone)
     piece, entries = np.zeros(bone.shape, bool), []
     for plane in range(max(first - 2, 0), min(end + 2, bone.shape[0])):
@@ -163,13 +165,15 @@ def _by_slices(bone: Volume, one: Lesion) -> tuple[HullDesign, NDArray[np.bool_]
         piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
         entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
     nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(one, vault, nothing, nothing, tuple(entries)), fill.solid_piece(piece, one.opening, bone)
+    return HullDesign(one, vault, nothing, nothing, tuple(entries)), prosthesis_volume.solid_piece(
+        piece, one.sheet, bone
+    )
 
 
 def _cone(vault: RadialChart, bone: Volume) -> NDArray[np.bool_]:
     """Voxels without bone in the directions of the hole, at any depth; beside it only as deep as its rim."""
     far, deep = (np.where(vault.hole, np.nanmedian(vault.outer) + d, np.nan) for d in (_ABOVE, -_BELOW))
-    return chart.voxelise(vault, far, deep, bone)
+    return radius_map.voxelise(vault, far, deep, bone)
 
 
 def _slice(
@@ -189,7 +193,7 @@ def _slice(
     if not cone.any():
         return nothing, "outside the hole"
     if len(hits) == _RAYS:
-        return fill.partial_loss(bone, min_area=min_area, region=near) & cone, "closed ring"
+        return prosthesis_volume.partial_loss(bone, min_area=min_area, region=near) & cone, "closed ring"
     hits = hits[~rim]
     if len(hits) < _RAYS / 2:  # their hull may not hold the inside
         return nothing, "no ring of bone in this slice"

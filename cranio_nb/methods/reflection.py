@@ -5,7 +5,7 @@ reflection: the skull is mirrored at its symmetry plane, bone is taken off, the 
 
 Idea. `symmetry.find` gives the plane x -> x - 2 (n (x - p)) n. The mirrored skull is the same voxels under another
 affine, so nothing is resampled: both skulls are measured along the same rays from inside the head, between voxels, on
-the lesion's chart, and the prosthesis lies between the mirrored radii, in the hole, off the bone. Where the mirror
+the opening's chart, and the prosthesis lies between the mirrored radii, in the hole, off the bone. Where the mirror
 image has no bone either, because the defect crosses the plane or has a partner, there is nothing to copy.
 
 Faithful: mirror, subtract, keep the piece in the hole. Ours: the plane is found and not clicked, the surface is smooth
@@ -31,14 +31,16 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from .. import chart, fill, lesion, symmetry
-from ..assembly import assemble
-from ..chart import RadialChart
 from ..errors import InputRefused
-from ..maps import extended
-from ..prosthesis import Lesion, Prosthesis
-from ..symmetry import SymmetryPlane
+from ..opening import Opening
+from ..prosthesis import Prosthesis
+from ..stages import prosthesis_volume
+from ..vault import opening_search, radius_map, symmetry
+from ..vault.radius_map import RadialChart
+from ..vault.ray_grid import extended
+from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
+from .assembly import assemble
 
 _TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
 _TIP = 2.0  # mm: narrower ends of a possible part are left out
@@ -51,11 +53,11 @@ _OUTLIER = 1.0  # mm: a difference larger than its surroundings by this counts h
 
 @dataclass(frozen=True, eq=False)
 class MirroredDesign:
-    """What the method did for one lesion; for pictures and lessons.
+    """What the method did for one opening; for pictures and lessons.
 
     Parameters
     ----------
-    lesion : Lesion
+    opening : Opening
     plane : SymmetryPlane
     own, mirrored : RadialChart
         The skull and its mirror image along the same rays; `mirrored.hole` is where the image lacks bone.
@@ -63,7 +65,7 @@ class MirroredDesign:
         Radii of the prosthesis in mm; nan where it has none.
     """
 
-    lesion: Lesion
+    opening: Opening
     plane: SymmetryPlane
     own: RadialChart
     mirrored: RadialChart
@@ -83,7 +85,7 @@ def paper_options(bone: Volume) -> dict[str, Any]:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     partial: bool = False,
     fit_rim: bool = True,
@@ -96,10 +98,10 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     partial : bool
-        Where the other side lacks bone too, leave that part (or that whole lesion) open instead of refusing.
+        Where the other side lacks bone too, leave that part (or that whole opening) open instead of refusing.
     fit_rim : bool
         Bend the mirrored surfaces smoothly to meet the bone around the hole, nowhere thinner than sound bone near it.
     smooth : bool
@@ -110,8 +112,8 @@ def design(
     Returns
     -------
     Prosthesis
-        `record["symmetry"]` describes the plane, `record["lesions"]` what part of each hole has no mirror image.
-        `working` holds a `MirroredDesign` per lesion.
+        `record["symmetry"]` describes the plane, `record["openings"]` what part of each hole has no mirror image.
+        `working` holds a `MirroredDesign` per opening.
 
     Raises
     ------
@@ -120,33 +122,33 @@ def design(
     InputRefused
         ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = lesion.find(bone) if lesions is None else lesions
+    openings = opening_search.find_openings(bone) if openings is None else openings
     tell("symmetry", 0.1)
-    plane = symmetry.find(bone, lesions[0].head_centre)
+    plane = symmetry.find(bone, openings[0].head_centre)
     made = []
-    for i, one in enumerate(lesions):
-        tell("mirroring", 0.2 + 0.6 * i / len(lesions))
+    for i, one in enumerate(openings):
+        tell("mirroring", 0.2 + 0.6 * i / len(openings))
         made.append(_mirrored(bone, one, plane, fit_rim))
     if not partial:
         _check_whole(made)
     patch = np.zeros(bone.shape, bool)
     for part in made:
         if np.isfinite(part.outer).any():
-            piece = chart.voxelise(part.own, part.outer, part.inner, bone)
-            patch |= fill.solid_piece(piece, part.lesion.opening, bone)
+            piece = radius_map.voxelise(part.own, part.outer, part.inner, bone)
+            patch |= prosthesis_volume.solid_piece(piece, part.opening.sheet, bone)
     if not patch.any():
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
     tell("surface", 0.9)
-    lost = [{"lesion": i, "without_mirror_image": part.lost} for i, part in enumerate(made)]
-    record = {"symmetry": plane.record(), "lesions": lost}
-    return assemble(patch, bone, lesions, "reflection", options, began=began, working=made, record=record)
+    lost = [{"opening": i, "without_mirror_image": part.lost} for i, part in enumerate(made)]
+    record = {"symmetry": plane.record(), "openings": lost}
+    return assemble(patch, bone, openings, "reflection", options, began=began, working=made, record=record)
 
 
 def _check_whole(made: list[MirroredDesign]) -> None:
-    """Refuse lesions that have too little to copy from."""
+    """Refuse openings that have too little to copy from."""
     short = [part for part in made if part.lost > _TOLERATED]
     if short:
         remedy = "Ask for the possible part (partial), or use a method that needs no symmetry."
@@ -154,7 +156,7 @@ def _check_whole(made: list[MirroredDesign]) -> None:
 
 
 def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
-    """The refusal of lesions whose mirrored side is missing too."""
+    """The refusal of openings whose mirrored side is missing too."""
     parts = ", ".join(f"{100 * part.lost:.0f} %" for part in made)
     return InputRefused(
         "MirrorMissing",
@@ -164,17 +166,17 @@ def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
     )
 
 
-def _mirrored(bone: Volume, one: Lesion, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
+def _mirrored(bone: Volume, one: Opening, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
     """Radii of the mirror image across one hole, nan where it has none to give."""
-    own = chart.look(bone, one)
-    image = chart.along(own, plane.mirrored(bone))
+    own = radius_map.look(bone, one)
+    image = radius_map.along(own, plane.mirrored(bone))
     known = np.isfinite(image.outer) & ~image.hole
     outer, inner = (extended(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
     if fit_rim:
         finest = max(_SMOOTH, 2 * float(bone.spacing.max()))
         outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
         inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
-        outer, inner = chart.thickened(own, outer, inner)
+        outer, inner = radius_map.thickened(own, outer, inner)
     made = MirroredDesign(one, plane, own, image, outer, inner)
     keep = own.hole
     if made.lost > _TOLERATED:

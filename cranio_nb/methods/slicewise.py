@@ -20,12 +20,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from .. import balloon, chart, features, fill, lesion, rays, slicing
-from ..assembly import assemble
 from ..curves import ChordFrame, GapEnds, Points, cubic, spiral
 from ..errors import NoOpening
-from ..prosthesis import Lesion, Prosthesis
+from ..opening import Opening
+from ..prosthesis import Prosthesis
+from ..stages import deformable_model, feature_extraction, prosthesis_volume
+from ..vault import opening_search, radius_map, slicing
+from ..vault.rims import RayProfile, fit_rims, share_tangents
 from ..volume import Volume
+from .assembly import assemble
 
 _TANGENT_ERROR, _TURN_ERROR = 0.05, 0.3  # radians of tangent error on sound bone, and per radian its rim bends
 _POINT_ERROR = 0.1  # mm: what a curve is off at its own ends
@@ -65,11 +68,11 @@ class SliceResult:
 
 @dataclass(frozen=True, eq=False)
 class SlicedDesign:
-    """What the method did for one lesion in one direction, slice by slice; for pictures, tables and lessons.
+    """What the method did for one opening in one direction, slice by slice; for pictures, tables and lessons.
 
     Parameters
     ----------
-    lesion : Lesion
+    opening : Opening
     frames : ndarray, shape (P, 3, 3)
         Origin, row and column vector of each slice, world mm: point = origin + row * r + col * c.
     unit : float
@@ -77,7 +80,7 @@ class SlicedDesign:
     slices : tuple of SliceResult
     """
 
-    lesion: Lesion
+    opening: Opening
     frames: NDArray[np.float64]
     unit: float
     slices: tuple[SliceResult, ...]
@@ -88,9 +91,9 @@ def paper_options(bone: Volume) -> dict[str, Any]:
     px = float(bone.spacing[1:].mean())
     return {
         "axial": True,
-        "skip": features.PAPER_SKIP * px,
+        "skip": feature_extraction.PAPER_SKIP * px,
         "reach": 10.0 * px,
-        "pressure": balloon.PAPER_PRESSURE,
+        "pressure": deformable_model.PAPER_PRESSURE,
         "n_snaxels": 21,
         "coupling": 0.0,
         "smooth": False,
@@ -99,7 +102,7 @@ def paper_options(bone: Volume) -> dict[str, Any]:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     axial: bool = False,
     directions: int = 6,
@@ -122,7 +125,7 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     axial : bool
         As the paper: the planes of the scan, features by skeleton and convex hull.
@@ -148,44 +151,46 @@ def design(
     -------
     Prosthesis
         `record["slices"]` holds one entry per slice: status, reason, angles, lengths, iterations, convergence.
-        `working` holds a `SlicedDesign` per lesion and direction.
+        `working` holds a `SlicedDesign` per opening and direction.
 
     Raises
     ------
     NoOpening
         When the vault is closed, or no slice of the opening could be bridged.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    lesions = lesion.find(bone) if lesions is None else lesions
+    openings = opening_search.find_openings(bone) if openings is None else openings
     scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol, "max_iter": max_iter}
     curve = {"n": n_snaxels, "pressure": pressure, "scheme": scheme}
     working: list[SlicedDesign] = []
     patch = np.zeros(bone.shape, bool)
-    for i, one in enumerate(lesions):
-        tell("slices", 0.9 * i / len(lesions))
+    for i, one in enumerate(openings):
+        tell("slices", 0.9 * i / len(openings))
         if axial:
             made, piece = _axial(bone, one, skip, reach, curve)
         else:
             made, piece = _fanned(bone, one, directions, skip, reach, coupling, curve)
         working += made
-        patch |= fill.main_piece(piece, one.opening.voxels)
+        patch |= prosthesis_volume.main_piece(piece, one.sheet.voxels)
     if not patch.any():
         raise NoOpening("NothingBridged", "No slice of the opening could be bridged.", "Try another slicing.")
     tell("surface", 0.9)
     slices = [_entry(i, s) for i, part in enumerate(working) for s in part.slices]
-    return assemble(patch, bone, lesions, "slicewise", options, began=began, working=working, record={"slices": slices})
+    return assemble(
+        patch, bone, openings, "slicewise", options, began=began, working=working, record={"slices": slices}
+    )
 
 
 def _axial(
-    bone: Volume, one: Lesion, skip: float, reach: float, curve: dict[str, Any]
+    bone: Volume, one: Opening, skip: float, reach: float, curve: dict[str, Any]
 ) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
-    """Slices and patch of one lesion along the planes of the scan."""
+    """Slices and patch of one opening along the planes of the scan."""
     first, end = one.planes
     planes = range(max(first - 2, 0), min(end + 2, bone.shape[0]))
     px = float(bone.spacing[1:].mean())
-    opening = one.opening.voxels[planes.start : planes.stop]
+    opening = one.sheet.voxels[planes.start : planes.stop]
     slices = bone.voxels[planes.start : planes.stop]
     inside = bone.to_voxel(one.head_centre)[1:]
     results = _carry(_inflate(_by_skeleton(slices, opening, skip / px, reach / px), inside, curve))
@@ -193,9 +198,9 @@ def _axial(
     near = ndimage.binary_dilation(opening.any(axis=0), iterations=int(np.ceil(3 / px)))
     for s in results:
         if s.status == "hull":
-            filled = fill.partial_loss(slices[s.plane], min_area=4 / px**2, region=near)
+            filled = prosthesis_volume.partial_loss(slices[s.plane], min_area=4 / px**2, region=near)
         elif s.curves.size:
-            filled = fill.patch(s.curves[0], s.curves[1], slices[s.plane])
+            filled = prosthesis_volume.patch(s.curves[0], s.curves[1], slices[s.plane])
         else:
             continue
         patch[planes.start + s.plane] = filled
@@ -203,10 +208,10 @@ def _axial(
 
 
 def _fanned(
-    bone: Volume, one: Lesion, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
+    bone: Volume, one: Opening, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
 ) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
-    """Slices of one lesion in several directions, and the patch between the means of their curves."""
-    vault = chart.look(bone, one)
+    """Slices of one opening in several directions, and the patch between the means of their curves."""
+    vault = radius_map.look(bone, one)
     made, radii, weights = [], [], []
     for fan in slicing.fans(vault, directions):
         profile = slicing.profile(vault, fan)
@@ -220,7 +225,7 @@ def _fanned(
     outer[vault.hole], inner[vault.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return made, np.zeros(bone.shape, bool)
-    return made, chart.voxelise(vault, *chart.thickened(vault, outer, inner), bone)
+    return made, radius_map.voxelise(vault, *radius_map.thickened(vault, outer, inner), bone)
 
 
 def _weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -230,7 +235,7 @@ def _weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) ->
     return np.where(total > 0, (weights * np.nan_to_num(values)).sum(axis=0) / np.where(total > 0, total, 1.0), np.nan)
 
 
-def _on_rays(results: list[SliceResult], boundary: int, profile: rays.RayProfile) -> tuple[NDArray, NDArray]:
+def _on_rays(results: list[SliceResult], boundary: int, profile: RayProfile) -> tuple[NDArray, NDArray]:
     """Radius of a fan's curves along the rays of its slices, and its weight; shape (P, K), nan and 0 elsewhere.
 
     A tangent that is wrong by an angle e at the end moves a cubic by e L t (1 - t)^2, so a point is the surer the
@@ -256,21 +261,21 @@ def _by_skeleton(slices: NDArray[np.bool_], opening: NDArray[np.bool_], skip: fl
     results = []
     for plane in range(len(slices)):
         try:
-            seen = features.slice_features(slices[plane])
+            seen = feature_extraction.slice_features(slices[plane])
             if seen.closed:
                 results.append(SliceResult(plane, "hull", "closed ring"))
                 continue
-            ends = features.gap_ends(seen, opening[plane], skip=skip, reach=reach)
+            ends = feature_extraction.gap_ends(seen, opening[plane], skip=skip, reach=reach)
             results.append(SliceResult(plane, "balloon", ends=ends))
-        except features.SliceProblem as problem:
+        except feature_extraction.SliceProblem as problem:
             results.append(SliceResult(plane, "skipped", problem.message))
     return results
 
 
-def _by_rays(profile: rays.RayProfile, skip: float, reach: float, coupling: float) -> list[SliceResult]:
+def _by_rays(profile: RayProfile, skip: float, reach: float, coupling: float) -> list[SliceResult]:
     """Gap ends of every slice of a fan, tangents shared between neighbours."""
-    rims = rays.fit_rims(profile, skip=skip, reach=reach)
-    tangents = rays.share_tangents(rims.tangents, coupling)
+    rims = fit_rims(profile, skip=skip, reach=reach)
+    tangents = share_tangents(rims.tangents, coupling)
     turns = ndimage.median_filter(np.nan_to_num(rims.turns, nan=1.0), size=(2 * round(coupling) + 1, 1, 1))
     results = []
     for plane in np.flatnonzero(profile.missing.any(axis=1)):
@@ -294,7 +299,7 @@ def _inflate(results: list[SliceResult], inside: NDArray, curve: dict[str, Any])
     )
     length = np.array([[f.length for f in pair] for pair in frames])
     start, slopes, push = _initial(length, angles[..., 0], angles[..., 1], curve["n"], curve["pressure"])
-    relaxed = balloon.inflate(start, slopes, pressure=push, **curve["scheme"])
+    relaxed = deformable_model.inflate(start, slopes, pressure=push, **curve["scheme"])
     out = list(results)
     for j, i in enumerate(own):
         values = {
@@ -329,7 +334,7 @@ def _initial(
     along = np.linalg.norm(np.diff(start, axis=-2), axis=-1).sum(-1)
     heads = [np.stack([np.cos(t), np.sin(t)], axis=-1) for t in (theta0, theta1 - np.pi)]
     slopes = np.stack(heads, axis=-2) * (along / (n - 1))[..., None, None]
-    return start, slopes, balloon.curvature_pressure(along, curvature)
+    return start, slopes, deformable_model.curvature_pressure(along, curvature)
 
 
 def _carry(results: list[SliceResult]) -> list[SliceResult]:
@@ -348,6 +353,6 @@ def _carry(results: list[SliceResult]) -> list[SliceResult]:
     return out
 
 
-def _entry(lesion_index: int, s: SliceResult) -> dict[str, Any]:
+def _entry(index_of_opening: int, s: SliceResult) -> dict[str, Any]:
     """JSON-able record of a slice."""
-    return {"lesion": lesion_index, "plane": s.plane, "status": s.status, "reason": s.reason, **s.values}
+    return {"opening": index_of_opening, "plane": s.plane, "status": s.status, "reason": s.reason, **s.values}

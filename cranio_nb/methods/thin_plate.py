@@ -39,15 +39,18 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from .. import chart, fill, lesion, prior_file, symmetry
-from ..assembly import assemble
-from ..chart import RadialChart
 from ..errors import InputRefused, NoOpening
-from ..maps import extended
-from ..prior import Prior, expect
-from ..prosthesis import Lesion, Prosthesis
-from ..symmetry import SymmetryPlane
+from ..opening import Opening
+from ..prior import file as prior_file
+from ..prior.shape_prior import Prior, expect
+from ..prosthesis import Prosthesis
+from ..stages import prosthesis_volume
+from ..vault import opening_search, radius_map, symmetry
+from ..vault.radius_map import RadialChart
+from ..vault.ray_grid import extended
+from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
+from .assembly import assemble
 
 Array = NDArray[np.float64]
 
@@ -65,12 +68,12 @@ _LEAST_NODES = 12
 
 @dataclass(frozen=True, eq=False)
 class Plate:
-    """What the method did for one lesion.
+    """What the method did for one opening.
 
     Parameters
     ----------
     chart : RadialChart
-        The vault around the lesion.
+        The vault around the opening.
     outer, inner : ndarray, shape (M, M)
         Radii of the prosthesis, mm; nan outside the hole.
     mirrored : tuple of ndarray, shape (M, M), or None
@@ -88,7 +91,7 @@ class Plate:
 
 def design(
     bone: Volume,
-    lesions: Sequence[Lesion] | None = None,
+    openings: Sequence[Opening] | None = None,
     *,
     second: float = 1.3,
     third: float = 1.8,
@@ -103,7 +106,7 @@ def design(
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    lesions : sequence of Lesion, optional
+    openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
     second, third : float
         The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
@@ -120,7 +123,7 @@ def design(
     -------
     Prosthesis
         `record["symmetry"]` describes the symmetry plane or says why there is none. `working` holds a `Plate` per
-        lesion.
+        opening.
 
     Raises
     ------
@@ -129,24 +132,24 @@ def design(
     InputRefused
         ``NoPrior`` or ``PriorDoesNotFit``.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "lesions", "progress")}
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
     learned = prior_file.load(Path(prior)) if prior else None
-    lesions = lesion.find(bone) if lesions is None else lesions
+    openings = opening_search.find_openings(bone) if openings is None else openings
     tell("symmetry", 0.1)
-    plane, found = _symmetry(bone, lesions[0]) if mirror else (None, {"unused": "not asked for"})
+    plane, found = _symmetry(bone, openings[0]) if mirror else (None, {"unused": "not asked for"})
     patch = np.zeros(bone.shape, bool)
     plates = []
-    for i, one in enumerate(lesions):
-        tell("plates", 0.2 + 0.6 * i / len(lesions))
+    for i, one in enumerate(openings):
+        tell("plates", 0.2 + 0.6 * i / len(openings))
         plates.append(_plate(bone, one, plane, learned, {"second": second, "third": third, "likeness": mirror}))
         patch |= _piece(plates[-1], one, bone)
     if not patch.any():
         raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
     tell("surface", 0.8)
     record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
-    return assemble(patch, bone, lesions, "thin-plate", options, began=began, working=plates, record=record)
+    return assemble(patch, bone, openings, "thin-plate", options, began=began, working=plates, record=record)
 
 
 def bend(
@@ -249,7 +252,7 @@ def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_arra
     return sparse.csr_array((np.tile(stencil.ravel(), len(nodes)), (rows, nodes.ravel())), shape=shape)
 
 
-def _symmetry(bone: Volume, one: Lesion) -> tuple[SymmetryPlane | None, dict[str, Any]]:
+def _symmetry(bone: Volume, one: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
     """The symmetry plane, if there is one, and what to record of it."""
     try:
         plane = symmetry.find(bone, one.head_centre)
@@ -261,10 +264,10 @@ def _symmetry(bone: Volume, one: Lesion) -> tuple[SymmetryPlane | None, dict[str
 
 
 def _plate(
-    bone: Volume, one: Lesion, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
+    bone: Volume, one: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
-    """Both plates of one lesion."""
-    vault = chart.look(bone, one)
+    """Both plates of one opening."""
+    vault = radius_map.look(bone, one)
     mirrored = None if plane is None else _other_side(bone, vault, plane)
     expected = None if learned is None else _expected(bone, vault, learned)
     nodes = max(1, round(_NODES / vault.mm))
@@ -281,7 +284,7 @@ def _plate(
 
 def _other_side(bone: Volume, vault: RadialChart, plane: SymmetryPlane) -> tuple[Array, Array]:
     """Outer and inner radii of the mirrored skull along the chart's rays; nan where it lacks bone."""
-    other = chart.along(vault, plane.mirrored(bone))
+    other = radius_map.along(vault, plane.mirrored(bone))
     return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
 
 
@@ -296,12 +299,12 @@ def _expected(bone: Volume, vault: RadialChart, learned: Prior) -> tuple[Array, 
     return outer, inner
 
 
-def _piece(plate: Plate, one: Lesion, bone: Volume) -> NDArray[np.bool_]:
+def _piece(plate: Plate, one: Opening, bone: Volume) -> NDArray[np.bool_]:
     """The patch between both plates."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
-    outer, inner = chart.thickened(plate.chart, plate.outer, plate.inner)
-    return fill.main_piece(chart.voxelise(plate.chart, outer, inner, bone), one.opening.voxels)
+    outer, inner = radius_map.thickened(plate.chart, plate.outer, plate.inner)
+    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), one.sheet.voxels)
 
 
 def thinned(values: Array, nodes: int) -> Array:

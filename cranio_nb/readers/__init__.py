@@ -6,7 +6,7 @@ Headers first, then a plan, then the pixels: `dicom_files`, `dicom_scan`, `dicom
 axes (planes up, rows back, columns left) and in LPS mm.
 """
 
+from .load_report import Finding, LoadReport
 from .read import ALLOWANCES, read_ct
-from .report import Finding, LoadReport
 
 __all__ = ["ALLOWANCES", "Finding", "LoadReport", "read_ct"]

@@ -6,39 +6,20 @@ World is DICOM LPS, mm: NIfTI counts x and y the other way round, NRRD says how 
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from pathlib import Path
-from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
-from ..volume import Affine, Volume, canonical_order
-from .plausible import AIR, check_finite, check_hu, clear_padding, is_mask
+from ..volume import Volume, canonical_order
+from .hu_checks import AIR, check_finite, check_hu, clear_padding, is_mask
+from .image import Image
+from .load_report import Finding, LoadReport
 from .regrid import slide_slices
-from .report import Finding, LoadReport
 
-MAX_VOXELS = 2**30
-_MAX_REST = 2**26  # bytes
 _SPACING_RANGE = (0.1, 10.0)  # mm
 _CORNER_TOL = 0.05  # mm
-
-
-@dataclass(frozen=True, eq=False)
-class Image:
-    """What a file says, before anything is made of it.
-
-    `raw` has the file's own axes (i, j, k) and numbers; `affine` maps their index to LPS mm; a value is
-    raw * `slope` + `intercept`.
-    """
-
-    source: str
-    raw: NDArray
-    affine: Affine
-    slope: float = 1.0
-    intercept: float = 0.0
-    findings: tuple[Finding, ...] = ()
 
 
 def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] = ()) -> tuple[Volume, LoadReport]:
@@ -47,9 +28,9 @@ def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] =
         start = stream.read(352)
         stream.seek(0)
         if start.startswith(b"NRRD000"):
-            from .nrrd_file import read_nrrd as read
+            from .nrrd import read_nrrd as read
         elif start[:2] == b"\x1f\x8b" or start[344:348] in (b"n+1\0", b"ni1\0") or start[4:8] in (b"n+2\0", b"ni2\0"):
-            from .nifti_file import read_nifti as read
+            from .nifti import read_nifti as read
         else:
             message = "The file is neither DICOM nor NIfTI nor NRRD."
             raise InputRefused("UnsupportedFile", message, "Give a DICOM folder, or a .nii, .nii.gz or .nrrd file.")
@@ -57,66 +38,6 @@ def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] =
     check_grid(image)
     voxels, findings = _values(image, mask, allow)
     return _finish(image, voxels, [*image.findings, *findings])
-
-
-def read_exactly(stream: BinaryIO, count: int) -> bytearray:
-    """`count` bytes of a stream, inflated or not.
-
-    Raises
-    ------
-    InputRefused
-        ``CorruptFile`` where it ends before.
-    """
-    content = bytearray(count)
-    view, filled = memoryview(content), 0
-    while filled < count:
-        part = stream.read(min(count - filled, 2**24))
-        if not part:
-            message = f"The file is cut short: it holds {filled} of {count} bytes of voxels."
-            raise InputRefused("CorruptFile", message, "Copy the file again from its source.")
-        view[filled : filled + len(part)] = part
-        filled += len(part)
-    return content
-
-
-def check_rest(stream: BinaryIO) -> list[Finding]:
-    """Read on to the end, where packed data hold their checksum; what is left there is remarked upon.
-
-    No more than `_MAX_REST` bytes are inflated for it.
-    """
-    rest = 0
-    while rest <= _MAX_REST:
-        part = stream.read(2**22)
-        if not part:
-            break
-        rest += len(part)
-    if not rest:
-        return []
-    message = "The file holds more bytes than its header declares voxels; they were left."
-    return [Finding("BytesLeft", "warning", message, {"at_least": rest})]
-
-
-def spatial_shape(sizes: list[int]) -> tuple[int, int, int]:
-    """Three sizes of an image, axes of one sample beyond the third left out.
-
-    Raises
-    ------
-    InputRefused
-        ``BadShape`` unless three axes remain; ``LimitExceeded`` beyond `MAX_VOXELS`.
-    """
-    if len(sizes) < 3 or any(size != 1 for size in sizes[3:]) or min(sizes) < 1:
-        message = f"The image has the sizes {' x '.join(str(s) for s in sizes)}; three axes are wanted."
-        raise InputRefused("BadShape", message, "Give one 3-D volume.")
-    shape = (int(sizes[0]), int(sizes[1]), int(sizes[2]))
-    if shape[0] * shape[1] * shape[2] > MAX_VOXELS:
-        message = f"The image declares {' x '.join(str(s) for s in shape)} voxels; at most {MAX_VOXELS} are read."
-        raise InputRefused("LimitExceeded", message, "Crop it to the head.")
-    return shape
-
-
-def no_orientation(what: str) -> InputRefused:
-    """The refusal for a file that does not say where left is."""
-    return InputRefused("NoOrientation", what, "Convert it again with its orientation, or allow no_orientation.")
 
 
 def check_grid(image: Image) -> None:

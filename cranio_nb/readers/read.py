@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ..errors import CranioError, InputRefused
 from ..volume import Volume
-from .report import LoadReport
+from .load_report import LoadReport
 
 ALLOWANCES = ("gap_fill", "implausible_hu", "no_orientation", "no_rescale", "wrong_modality")
 
@@ -78,7 +78,7 @@ def _read(
 ) -> tuple[Volume, LoadReport]:
     # each format's library is loaded only where it is needed
     if path.is_dir() or (path.is_file() and _looks_like_dicom(path)):
-        from .dicom import read_dicom
+        from .dicom.read import read_dicom
 
         return read_dicom(path, mask=mask, allow=allow, progress=progress)
     if path.is_file():
@@ -91,7 +91,7 @@ def _read(
 
 
 def _looks_like_dicom(path: Path) -> bool:
-    from .dicom_scan import looks_like_dicom
+    from .dicom.scan import looks_like_dicom
 
     with open(path, "rb") as stream:
         return looks_like_dicom(stream.read(136))

@@ -38,19 +38,13 @@
 # %%
 import numpy as np
 
-from cranio_nb import (
-    check,
-    classroom,
-    evaluate,
-    features,
-    lesion,
-    render,
-    segment,
-    view3d,
-    widgets,
-)
-from cranio_nb.mesh_check import check_mesh
+from cranio_nb.drawing import scene3d, shading
+from cranio_nb.evaluation import scores
+from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.methods import slicewise
+from cranio_nb.stages import feature_extraction, segmentation
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search
 
 # %% [markdown]
 # ## 1. The scan
@@ -86,7 +80,7 @@ viewer
 # Then the couch and loose specks are dropped and small holes are closed.
 
 # %% tags=["nbval-check-output"]
-bone = segment.segment(ct, threshold=400)
+bone = segmentation.segment(ct, threshold=400)
 print(f"{bone.voxels.mean():.1%} of the voxels are bone")
 
 # %% [markdown]
@@ -95,7 +89,7 @@ print(f"{bone.voxels.mean():.1%} of the voxels are bone")
 # We stand inside the head and look out. Where a ray meets no bone, there is an opening.
 
 # %% tags=["nbval-check-output"]
-openings = lesion.find(bone)
+openings = opening_search.find_openings(bone)
 first, end = openings[0].planes
 print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 
@@ -115,8 +109,10 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10
 follow = {"skip": 3, "reach": 10}
 plane = classroom.bridged_plane(bone, openings[0], **follow)  # a slice with both ends
-seen = features.slice_features(bone.voxels[plane])  # the bone's boundary and middle line
-outer, inner = features.gap_ends(seen, openings[0].opening.voxels[plane], **follow)
+seen = feature_extraction.slice_features(
+    bone.voxels[plane]
+)  # the bone's boundary and middle line
+outer, inner = feature_extraction.gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
 # any point in the head: the balloon must know which way is out
 inside = bone.to_voxel(openings[0].head_centre)[1:]
 player = widgets.balloon(outer, inside, background=bone.voxels[plane], px=case.px)
@@ -158,13 +154,13 @@ print(
 
 # %% tags=["nbval-check-output"]
 if case.truth is not None:
-    score = evaluate.score(prosthesis.patch, case.truth, bone)
+    score = scores.score(prosthesis.patch, case.truth, bone)
     print(f"Dice {score.dice:.3f}, 95 % of the surface within {score.hd95:.2f} mm")
 
 # %% tags=["nbval-check-output"]
-skull = render.skull_surface(bone)
+skull = shading.skull_surface(bone)
 alt = "A pale skull seen from its side; the hole is closed by the prosthesis, in blue."
-view3d.show(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
+scene3d.show_meshes(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
 
 # %% [markdown]
 # *In a live notebook you can turn this head with the mouse.* Its top is flat because the slices are 2.5 mm apart: the
@@ -179,7 +175,7 @@ view3d.show(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
 # rather than going on with nothing.
 
 # %% tags=["raises-exception"]
-segment.segment(ct, threshold=4000)
+segmentation.segment(ct, threshold=4000)
 
 # %% [markdown]
 # ## Exercises

@@ -30,8 +30,8 @@ from pathlib import Path
 import numpy as np
 import pydicom
 
-from cranio_nb import check, classroom, widgets
 from cranio_nb.readers import read_ct
+from cranio_nb.teaching import check, classroom, widgets
 from data_synth import phantom_case, write_dicom
 
 # %% [markdown]

@@ -27,7 +27,11 @@
 import numpy as np
 from scipy import ndimage
 
-from cranio_nb import check, classroom, evaluate, lesion, render, segment, widgets
+from cranio_nb.drawing import shading
+from cranio_nb.evaluation import scores
+from cranio_nb.stages import segmentation
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -76,12 +80,12 @@ panel
 
 # %% tags=["nbval-check-output"]
 levels = np.array([200, 300, 400, 500, 625, 800, 1000])
-masks = [segment.segment(ct, threshold=level) for level in levels]
+masks = [segmentation.segment(ct, threshold=level) for level in levels]
 volumes = np.array([m.voxels.sum() * m.voxel_volume / 1000 for m in masks])
 if case.phantom is not None:
     true = Volume(case.phantom.bone, ct.affine)
     for level, volume, mask in zip(levels, volumes, masks, strict=True):
-        overlap = evaluate.dice(mask, true)
+        overlap = scores.dice(mask, true)
         print(f"{level:5} HU: {volume:6.1f} cm3, Dice with the true bone {overlap:.3f}")
 
 # %% [markdown]
@@ -89,7 +93,7 @@ if case.phantom is not None:
 
 # %% tags=["nbval-check-output"]
 if case.phantom is not None:
-    area = render.skull_surface(true).areas.sum()
+    area = shading.skull_surface(true).areas.sum()
     for level, volume in zip(levels[2:5], volumes[2:5], strict=True):
         extra = 1000 * volume - true.voxels.sum() * true.voxel_volume
         print(f"{level} HU: each surface lies {extra / area:+.2f} mm outward")
@@ -115,9 +119,11 @@ if case.phantom is not None:
 # picture shows a piece of 40 x 40 mm.
 
 # %%
-plane = max(lesion.find(masks[2])[0].planes[0] - 4, 0)  # below the hole the ring is closed
-raw = segment.threshold_hu(ct.voxels, 700)
-filled = segment.fill_holes(raw, max_hole=60 / px**2)  # 60 mm2, in pixels
+plane = max(
+    opening_search.find_openings(masks[2])[0].planes[0] - 4, 0
+)  # below the hole the ring is closed
+raw = segmentation.threshold_hu(ct.voxels, 700)
+filled = segmentation.fill_holes(raw, max_hole=60 / px**2)  # 60 mm2, in pixels
 added = filled[plane] & ~raw[plane]
 front = np.argwhere(raw[plane])[:1]  # the first bone pixel from the top
 
@@ -163,8 +169,8 @@ print(f"{ndimage.label(tiny, np.ones((3, 3)))[1]} parts if corners connect as we
 # %% tags=["nbval-check-output"]
 lying = phantom_case("class", couch=True)
 level = np.flatnonzero(lying.implant.any(axis=(1, 2)))[0] - 4
-bright = segment.threshold_hu(lying.hu, 400)
-kept = segment.drop_artefacts(bright)
+bright = segmentation.threshold_hu(lying.hu, 400)
+kept = segmentation.drop_artefacts(bright)
 fig, (ax,) = classroom.axes(height=4.2, width=5.0)
 classroom.show_mask(ax, bright[level], px=0.9, colour="#D55E00")
 classroom.show_mask(ax, kept[level], px=0.9, title="skull kept, couch dropped (red)")

@@ -29,8 +29,10 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull
 from skimage.morphology import skeletonize
 
-from cranio_nb import check, classroom, features, lesion, segment, widgets
 from cranio_nb.curves import ChordFrame
+from cranio_nb.stages import feature_extraction, segmentation
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search
 
 # %% [markdown]
 # ## Parameters
@@ -47,8 +49,8 @@ from cranio_nb.curves import ChordFrame
 
 # %%
 case = classroom.load("class")
-bone = segment.segment(case.ct)
-opening = lesion.find(bone)[0]
+bone = segmentation.segment(case.ct)
+opening = opening_search.find_openings(bone)[0]
 plane = classroom.bridged_plane(bone, opening, skip=10, reach=10)
 mask, px = bone.voxels[plane], case.px
 
@@ -63,7 +65,7 @@ mask, px = bone.voxels[plane], case.px
 # outer or the inner one?
 
 # %% tags=["nbval-check-output"]
-seen = features.slice_features(mask)
+seen = feature_extraction.slice_features(mask)
 fig, (left, right) = classroom.axes(2, height=4.4)
 classroom.show_mask(left, mask, px=px, title="bone, spine, hull")
 spine = seen.skeleton[0]
@@ -104,7 +106,7 @@ row, col = np.mgrid[-30:30, -30:30]
 bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) <= 5)
 
 # %% tags=["nbval-check-output"]
-raw, kept = np.argwhere(skeletonize(bar)), features.slice_features(bar).skeleton[0]
+raw, kept = np.argwhere(skeletonize(bar)), feature_extraction.slice_features(bar).skeleton[0]
 fig, (ax,) = classroom.axes(height=3.6, width=6.0)
 classroom.show_mask(ax, bar, px=px, title="one end of a bar, cut squarely")
 classroom.show_points(ax, raw, px=px, colour="#D55E00", marker="s", label="raw skeleton")
@@ -130,7 +132,7 @@ classroom.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} 
 # 3. Move `reach` to 40 mm.
 
 # %% tags=["nbval-check-output"]
-widgets.features(bone, plane, opening=opening.opening)
+widgets.features(bone, plane, opening=opening.sheet)
 
 # %% [markdown]
 # <details>
@@ -162,8 +164,11 @@ inside = bone.to_voxel(opening.head_centre)[1:]
 
 def measured(plane, skip, reach):
     """Length of the gap (px) and its end angles (degrees), as found in a slice."""
-    seen, hole = features.slice_features(bone.voxels[plane]), opening.opening.voxels[plane]
-    outer, _ = features.gap_ends(seen, hole, skip=skip, reach=reach)
+    seen, hole = (
+        feature_extraction.slice_features(bone.voxels[plane]),
+        opening.sheet.voxels[plane],
+    )
+    outer, _ = feature_extraction.gap_ends(seen, hole, skip=skip, reach=reach)
     frame = ChordFrame.of(outer, inside)
     return frame.length, np.degrees(frame.end_angles(outer))
 
@@ -201,7 +206,7 @@ nearby = [p for p in range(*opening.planes) if abs(p - plane) <= 5]
 for skip, reach in settings:
     steeper = []
     for p in nearby:
-        with suppress(features.SliceProblem):
+        with suppress(feature_extraction.SliceProblem):
             length, angles = measured(p, skip, reach)
             steeper.append((angles - expected(p, length)) * [1, -1])
     off = f"mean {np.mean(steeper):+5.1f}, scatter {np.std(steeper, axis=0).mean():.1f} degrees"
@@ -228,8 +233,8 @@ for skip, reach in settings:
 # missing, or nothing. A closed ring has no ends, and the package says so. (Lesson 05 has the paper's answer for these.)
 
 # %% tags=["raises-exception"]
-closed = features.slice_features(bone.voxels[opening.planes[0] - 4])
-features.gap_ends(closed)
+closed = feature_extraction.slice_features(bone.voxels[opening.planes[0] - 4])
+feature_extraction.gap_ends(closed)
 
 # %% [markdown]
 # ## Exercises

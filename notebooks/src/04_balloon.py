@@ -27,9 +27,16 @@
 # %%
 import numpy as np
 
-from cranio_nb import check, classroom, features, lesion, segment, widgets
-from cranio_nb.balloon import PAPER_PRESSURE, curvature_pressure, inflate, tangent_pressure
 from cranio_nb.curves import ChordFrame, cubic, spiral
+from cranio_nb.stages import feature_extraction, segmentation
+from cranio_nb.stages.deformable_model import (
+    PAPER_PRESSURE,
+    curvature_pressure,
+    inflate,
+    tangent_pressure,
+)
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search
 
 # %% [markdown]
 # ## Parameters
@@ -47,8 +54,8 @@ from cranio_nb.curves import ChordFrame, cubic, spiral
 
 # %%
 case = classroom.load("class")
-bone = segment.segment(case.ct)
-opening = lesion.find(bone)[0]
+bone = segmentation.segment(case.ct)
+opening = opening_search.find_openings(bone)[0]
 plane = classroom.bridged_plane(bone, opening, skip=3, reach=10)
 inside = bone.to_voxel(opening.head_centre)[1:]
 
@@ -65,8 +72,8 @@ inside = bone.to_voxel(opening.head_centre)[1:]
 # $$c(s) = \bigl(Ls,\; L(\tan\theta_0+\tan\theta_1)s^3 - L(2\tan\theta_0+\tan\theta_1)s^2 + L\tan\theta_0\, s\bigr)$$
 
 # %% tags=["nbval-check-output"]
-seen = features.slice_features(bone.voxels[plane])
-outer, inner = features.gap_ends(seen, opening.opening.voxels[plane], skip=3, reach=10)
+seen = feature_extraction.slice_features(bone.voxels[plane])
+outer, inner = feature_extraction.gap_ends(seen, opening.sheet.voxels[plane], skip=3, reach=10)
 frame = ChordFrame.of(outer, inside)
 theta0, theta1 = frame.end_angles(outer)
 start = cubic(frame.length, theta0, theta1, 21)

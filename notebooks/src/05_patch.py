@@ -26,8 +26,11 @@ import numpy as np
 from scipy import ndimage
 from skimage.morphology import convex_hull_image
 
-from cranio_nb import check, classroom, evaluate, fill, lesion, segment, tables, widgets
+from cranio_nb.evaluation import paper_tables, scores
 from cranio_nb.methods import slicewise
+from cranio_nb.stages import prosthesis_volume, segmentation
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search
 
 # %% [markdown]
 # ## Parameters
@@ -43,8 +46,8 @@ from cranio_nb.methods import slicewise
 
 # %%
 case = classroom.load("class")
-bone, px = segment.segment(case.ct), case.px
-openings = lesion.find(bone)
+bone, px = segmentation.segment(case.ct), case.px
+openings = opening_search.find_openings(bone)
 opening = openings[0]
 
 # %% [markdown]
@@ -61,8 +64,8 @@ bridged = [s for s in made if s.status == "balloon"]
 one = bridged[len(bridged) // 2]
 plane = one.plane + max(opening.planes[0] - 2, 0)  # the slices begin two planes below the hole
 outer, inner = one.curves
-region = fill.between(outer, inner, bone.shape[1:])
-patch = fill.patch(outer, inner, bone.voxels[plane])
+region = prosthesis_volume.between(outer, inner, bone.shape[1:])
+patch = prosthesis_volume.patch(outer, inner, bone.voxels[plane])
 print(f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without the bone")
 
 # %% tags=["nbval-check-output"]
@@ -97,11 +100,11 @@ classroom.picture(fig, alt, f"patch of {patch.sum() * px**2:.0f} mm2")
 
 # %% tags=["nbval-check-output"]
 dented = classroom.load("class", defect="partial")
-dent = segment.segment(dented.ct)
+dent = segmentation.segment(dented.ct)
 lost = dented.truth.voxels if dented.truth is not None else dent.voxels
 at = int(lost.sum(axis=(1, 2)).argmax())
 hull = convex_hull_image(dent.voxels[at])
-found = fill.partial_loss(dent.voxels[at], min_area=20)
+found = prosthesis_volume.partial_loss(dent.voxels[at], min_area=20)
 print(f"{(hull & ~dent.voxels[at]).sum()} px in the hull but not bone; {found.sum()} px kept")
 
 # %% tags=["nbval-check-output"]
@@ -131,16 +134,16 @@ classroom.picture(fig, alt, f"dent of {found.sum() * px**2:.0f} mm2")
 # The record says of each slice how it was done.
 
 # %% tags=["nbval-check-output"]
-counts = tables.count_statuses(paper.record["slices"])
+counts = paper_tables.count_statuses(paper.record["slices"])
 print("the paper's preset:", counts)
 if case.truth is not None:
-    score = evaluate.score(paper.patch, case.truth, bone)
+    score = scores.score(paper.patch, case.truth, bone)
     print(f"Dice {score.dice:.3f}, HD95 {score.hd95:.1f} mm, in bone: {score.overlap} voxels")
     planes = np.flatnonzero(case.truth.voxels.any(axis=(1, 2)))
     print(f"bone was cut in slices {planes[0]} to {planes[-1]}")
 
 # %% [markdown]
-# The paper had 23 slices with a lesion, 3 of them by the hull and 20 by balloons.
+# The paper had 23 slices with an opening, 3 of them by the hull and 20 by balloons.
 #
 # (HD95: 95 % of the distances between the two surfaces are smaller; lesson 07.) A Dice of 0.549 is poor: only about
 # half of patch and truth coincide. It is not the filling that fails. The paper's constant pressure is too weak for
@@ -186,7 +189,7 @@ tries |= {f"fans, {n} direction(s)": {"directions": n} for n in (1, 2, 6)}
 for name, options in tries.items():
     designed = slicewise.design(bone, openings, **options)
     if case.truth is not None:
-        s = evaluate.score(designed.patch, case.truth, bone)
+        s = scores.score(designed.patch, case.truth, bone)
         print(f"{name:20} Dice {s.dice:.3f}, HD95 {s.hd95:.2f} mm, mean {s.assd:.2f} mm")
 
 # %% [markdown]
@@ -225,7 +228,7 @@ for name, options in tries.items():
 # (`fill.between` turns the inner curve round itself, so here we turn it once too often.)
 
 # %% tags=["raises-exception"]
-bow_tie = fill.between(outer, inner[::-1], bone.shape[1:])
+bow_tie = prosthesis_volume.between(outer, inner[::-1], bone.shape[1:])
 agree = (bow_tie & region).sum() / region.sum()
 assert agree == 1, f"only {agree:.0%} of the region is filled: the outline is a bow tie"
 

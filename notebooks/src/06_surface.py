@@ -28,21 +28,16 @@ from pathlib import Path
 
 import numpy as np
 
-from cranio_nb import (
-    check,
-    classroom,
-    export,
-    implant,
-    lesion,
-    plot,
-    segment,
-    surface,
-    widgets,
-)
+from cranio_nb.drawing import figures
+from cranio_nb.geometry.mesh_check import check_mesh
+from cranio_nb.implant.workshop import workshop
 from cranio_nb.mesh import Mesh
-from cranio_nb.mesh_check import check_mesh
 from cranio_nb.methods import slicewise
+from cranio_nb.output import files
 from cranio_nb.prosthesis import OUTER
+from cranio_nb.stages import segmentation, surface_reconstruction
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search
 
 # %% [markdown]
 # ## Parameters
@@ -57,8 +52,8 @@ from cranio_nb.prosthesis import OUTER
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
-bone = segment.segment(case.ct)
-openings = lesion.find(bone)
+bone = segmentation.segment(case.ct)
+openings = opening_search.find_openings(bone)
 patch = slicewise.design(bone, openings).patch
 print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 
@@ -71,20 +66,20 @@ print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 # **Predict.** Planes are 2.5 mm apart, pixels 0.9 mm. How high will the stairs be?
 
 # %% tags=["nbval-check-output"]
-raw = surface.extract(patch, smooth=False)
-smooth = surface.extract(patch)
+raw = surface_reconstruction.extract(patch, smooth=False)
+smooth = surface_reconstruction.extract(patch)
 print(f"raw: {len(raw.faces)} faces, area {raw.areas.sum() / 100:.1f} cm2")
 print(f"smooth: {len(smooth.faces)} faces, area {smooth.areas.sum() / 100:.1f} cm2")
 
 # %% tags=["nbval-check-output"]
 nothing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
 towards = openings[0].direction + [0, 0, 0.4]
-figure = plot.view_figure(nothing, raw, towards, px=0.14)
+figure = figures.view_figure(nothing, raw, towards, px=0.14)
 alt = "The raw prosthesis: steps run round it like the contour lines of a map."
 classroom.picture(figure, alt, f"raw, area {raw.areas.sum() / 100:.1f} cm2")
 
 # %% tags=["nbval-check-output"]
-figure = plot.view_figure(nothing, smooth, towards, px=0.14)
+figure = figures.view_figure(nothing, smooth, towards, px=0.14)
 alt = "The same prosthesis, smoothed: the steps are gone, the outline is the same."
 classroom.picture(figure, alt, f"smooth, area {smooth.areas.sum() / 100:.1f} cm2")
 
@@ -107,7 +102,7 @@ classroom.picture(figure, alt, f"smooth, area {smooth.areas.sum() / 100:.1f} cm2
 # surface within these bounds and keeps the volume.
 
 # %% tags=["nbval-check-output"]
-moved = surface.deviation(raw, smooth)
+moved = surface_reconstruction.deviation(raw, smooth)
 bound = np.linalg.norm(patch.spacing) / 2
 print(f"moved by {moved.mean:.2f} mm on average, {moved.max:.2f} at most; allowed {bound:.2f}")
 print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm3 after")
@@ -121,8 +116,8 @@ widgets.surface(patch)
 
 # %% tags=["nbval-check-output"]
 for steps in (0, 1, 5, 10, 24, 200):
-    after = surface.extract(patch, n_steps=steps)
-    moved = surface.deviation(raw, after)
+    after = surface_reconstruction.extract(patch, n_steps=steps)
+    moved = surface_reconstruction.deviation(raw, after)
     print(f"{steps:3} steps: area {after.areas.sum() / 100:.2f} cm2, moved {moved.mean:.2f} mm")
 
 # %% [markdown]
@@ -164,14 +159,14 @@ print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
 # another question: a rim that widens inwards holds it back.
 
 # %% tags=["nbval-check-output"]
-data = implant.implant_data(smooth)
+data = workshop.implant_data(smooth)
 print(f"{data.volume_cm3:.1f} cm3")
 for material, mass in data.mass_g.items():
-    print(f"{material:10} {implant.DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
+    print(f"{material:10} {workshop.DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
 
 # %% tags=["nbval-check-output"]
 path = Path(tempfile.mkdtemp()) / "prosthesis.stl"
-export.write_mesh(smooth, path)
+files.write_mesh(smooth, path)
 print(f"{path.name}: {path.stat().st_size} bytes = 84 + 50 x {len(smooth.faces)} faces")
 
 # %% [markdown]
@@ -182,9 +177,9 @@ print(f"{path.name}: {path.stat().st_size} bytes = 84 + 50 x {len(smooth.faces)}
 # Give the workshop the outer side only. It looks fine on screen, but it is a skin without an inside:
 
 # %% tags=["raises-exception"]
-sides = surface.face_sides(smooth, bone, openings[0].head_centre)
+sides = surface_reconstruction.face_sides(smooth, bone, openings[0].head_centre)
 skin = Mesh(smooth.vertices, smooth.faces[sides == OUTER])
-export.write_mesh(skin, path)
+files.write_mesh(skin, path)
 
 # %% [markdown]
 # ## Exercises

@@ -26,10 +26,13 @@ import numpy as np
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from cranio_nb import check, classroom, evaluate, lesion, segment, tables, widgets
+from cranio_nb.evaluation import paper_tables, scores
 from cranio_nb.methods import slicewise
+from cranio_nb.pipeline.run import check_truth
 from cranio_nb.prosthesis import INNER, OUTER
-from cranio_nb.run import check_truth
+from cranio_nb.stages import segmentation
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search
 from cranio_nb.volume import Volume
 
 # %% [markdown]
@@ -42,8 +45,8 @@ from cranio_nb.volume import Volume
 
 # %%
 case = classroom.load("class", needs_truth=True)
-bone, truth = segment.segment(case.ct), case.truth
-openings = lesion.find(bone)
+bone, truth = segmentation.segment(case.ct), case.truth
+openings = opening_search.find_openings(bone)
 made = slicewise.design(bone, openings)
 seen = check_truth(made, truth, bone, openings[0])
 
@@ -56,7 +59,7 @@ seen = check_truth(made, truth, bone, openings[0])
 
 # %% tags=["nbval-check-output"]
 print("in voxels       min   max   mean  std")
-for whose, table in (("ours", seen.table3), ("the paper's", tables.PAPER_DISTANCES)):
+for whose, table in (("ours", seen.table3), ("the paper's", paper_tables.PAPER_DISTANCES)):
     for side in ("outer", "inner"):
         row = table[side]
         print(f"{side} {whose:11} {row.min:5.2f} {row.max:5.2f} {row.mean:5.2f} {row.std:5.2f}")
@@ -124,7 +127,7 @@ tries = {
 to_truth = cKDTree(truth.to_world(np.argwhere(truth.voxels)))
 print("                     Dice   HD95   one way, mm")
 for name, voxels in tries.items():
-    s = evaluate.score(truth.with_voxels(voxels), truth, bone)
+    s = scores.score(truth.with_voxels(voxels), truth, bone)
     one_way = to_truth.query(truth.to_world(np.argwhere(voxels)))[0].mean()
     print(f"{name:20} {s.dice:.3f} {s.hd95:6.2f} {one_way:8.2f}")
 
@@ -149,9 +152,9 @@ flipped = bone.voxels[:, :, ::-1]
 shifts = np.arange(-15, 16)
 cover = [(np.roll(flipped, s, 2) & bone.voxels).sum() for s in shifts]
 best = shifts[np.argmax(cover)]
-near = ndimage.binary_dilation(openings[0].opening.voxels, iterations=6)
+near = ndimage.binary_dilation(openings[0].sheet.voxels, iterations=6)
 mirror = truth.with_voxels(np.roll(flipped, best, 2) & ~bone.voxels & near)
-s = evaluate.score(mirror, truth, bone)
+s = scores.score(mirror, truth, bone)
 print(f"mirror, shifted by {best} columns: Dice {s.dice:.3f}, HD95 {s.hd95:.2f} mm")
 print(f"our design:                  Dice {seen.score.dice:.3f}, HD95 {seen.score.hd95:.2f} mm")
 
@@ -167,7 +170,7 @@ print(f"our design:                  Dice {seen.score.dice:.3f}, HD95 {seen.scor
 
 # %% tags=["raises-exception"]
 nearer = Volume(truth.voxels, truth.affine @ np.diag([0.8, 1, 1, 1]))
-evaluate.score(nearer, truth, bone)
+scores.score(nearer, truth, bone)
 
 # %% [markdown]
 # ## Exercises

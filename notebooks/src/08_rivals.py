@@ -27,9 +27,13 @@
 import numpy as np
 from skimage.morphology import convex_hull_image
 
-from cranio_nb import check, classroom, evaluate, lesion, segment, symmetry, tables, widgets
-from cranio_nb import truth as measure
-from cranio_nb.methods import hull, reflection, slicewise, you
+from cranio_nb.evaluation import against_truth as measure
+from cranio_nb.evaluation import paper_tables, scores
+from cranio_nb.methods import hull, reflection, slicewise
+from cranio_nb.methods.you.method import method as you
+from cranio_nb.stages import segmentation
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search, symmetry
 
 # %% [markdown]
 # ## Parameters
@@ -46,8 +50,8 @@ from cranio_nb.methods import hull, reflection, slicewise, you
 
 # %%
 case = classroom.load("class", needs_truth=True)
-bone, px = segment.segment(case.ct), case.px
-openings = lesion.find(bone)
+bone, px = segmentation.segment(case.ct), case.px
+openings = opening_search.find_openings(bone)
 true = measure.true_prosthesis(case.truth, bone, openings[0])
 
 # %% [markdown]
@@ -84,9 +88,9 @@ classroom.picture(
 # %% tags=["nbval-check-output"]
 sheet = hull.design(bone, openings)
 burr = classroom.load("class", defect="burr_hole", needs_truth=True)
-small = hull.design(segment.segment(burr.ct))
-print(f"this hole: Dice {evaluate.dice(sheet.patch, case.truth):.3f}")
-print(f"burr hole: Dice {evaluate.dice(small.patch, burr.truth):.3f}")
+small = hull.design(segmentation.segment(burr.ct))
+print(f"this hole: Dice {scores.dice(sheet.patch, case.truth):.3f}")
+print(f"burr hole: Dice {scores.dice(small.patch, burr.truth):.3f}")
 
 # %% [markdown]
 # ## 2. The mirror
@@ -143,7 +147,7 @@ copies = {}
 for name, skull in {"our head": bone, "lopsided": lopsided}.items():
     for fit in (False, True):
         made = copies[name, fit] = reflection.design(skull, openings, fit_rim=fit)
-        dice = evaluate.dice(made.patch, case.truth)
+        dice = scores.dice(made.patch, case.truth)
         print(f"{name}, fit_rim {fit!s:5}: Dice {dice:.3f}")
 
 # %% tags=["nbval-check-output"]
@@ -201,7 +205,7 @@ film
 
 # %% tags=["nbval-check-output"]
 flat = you.design(bone, openings)
-columns = {"the paper's You": tables.PAPER_DISTANCES["You et al."]}
+columns = {"the paper's You": paper_tables.PAPER_DISTANCES["You et al."]}
 columns["here"] = measure.table3(flat, true, bone)["outer"]
 for name, row in columns.items():
     print(f"{name:15}: mean {row.mean:.2f} voxels, max {row.max:.2f}", end="")
@@ -260,7 +264,7 @@ classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone a
 # Ask the mirror for a hole that crosses the middle. What should be copied is missing, too:
 
 # %% tags=["raises-exception"]
-frontal = segment.segment(classroom.load("tiny", defect="frontal").ct)
+frontal = segmentation.segment(classroom.load("tiny", defect="frontal").ct)
 reflection.design(frontal)
 
 # %% [markdown]

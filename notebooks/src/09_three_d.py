@@ -26,9 +26,14 @@
 # %%
 import numpy as np
 
-from cranio_nb import chart, check, classroom, evaluate, lesion, plot, segment, widgets
-from cranio_nb import truth as measure
-from cranio_nb.methods import dnurbs, slicewise, thin_plate
+from cranio_nb.drawing import figures
+from cranio_nb.evaluation import against_truth as measure
+from cranio_nb.evaluation import scores
+from cranio_nb.methods import slicewise, thin_plate
+from cranio_nb.methods.dnurbs.method import method as dnurbs
+from cranio_nb.stages import segmentation
+from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.vault import opening_search, radius_map
 
 # %% [markdown]
 # ## Parameters
@@ -47,8 +52,8 @@ from cranio_nb.methods import dnurbs, slicewise, thin_plate
 
 # %%
 case = classroom.load("class", needs_truth=True)
-bone = segment.segment(case.ct)
-openings = lesion.find(bone)
+bone = segmentation.segment(case.ct)
+openings = opening_search.find_openings(bone)
 true = measure.true_prosthesis(case.truth, bone, openings[0])
 
 # %% [markdown]
@@ -59,7 +64,7 @@ true = measure.true_prosthesis(case.truth, bone, openings[0])
 # hole is its middle, and distances from the middle are true, as on a map of the world centred on the pole.
 
 # %% tags=["nbval-check-output"]
-vault = chart.look(bone, openings[0])
+vault = radius_map.look(bone, openings[0])
 fig, axes = classroom.axes(2, height=3.8)
 half = (len(vault.outer) // 2 + 0.5) * vault.mm
 maps = {"outer radius (mm)": vault.outer, "thickness (mm)": vault.outer - vault.inner}
@@ -103,7 +108,7 @@ for order, length in ((2, 2), (2, 10), (3, 2), (3, 10)):
 # %% tags=["nbval-check-output"]
 fig, (ax,) = classroom.axes(height=3.2)
 classroom.plot_lines(ax, x, bridges, xlabel="along the bow (mm)", ylabel="above the truth (mm)")
-ax.axvspan(-25, 25, color=plot.BONE, alpha=0.4)
+ax.axvspan(-25, 25, color=figures.BONE, alpha=0.4)
 alt = (
     "Four bridges minus the true bow, the gap grey: two orders, each smoothing little and much."
 )
@@ -252,8 +257,8 @@ for moved in ({"step": 1}, {"step": 40}, {"mass": 3}, {"mass": 1, "wavelength": 
 wide = classroom.load("class", defect="large", needs_truth=True)
 methods = {"slice method": slicewise, "thin plate": thin_plate, "D-NURBS": dnurbs}
 made = {name: method.design(bone, openings) for name, method in methods.items()}
-skull = segment.segment(wide.ct)
-largest = lesion.find(skull)
+skull = segmentation.segment(wide.ct)
+largest = opening_search.find_openings(skull)
 over = {name: method.design(skull, largest, smooth=False) for name, method in methods.items()}
 
 # %% tags=["nbval-check-output"]
@@ -262,8 +267,8 @@ for name, one in made.items():
     seen = measure.against(one, true, bone)
     out, inn = seen.table3["outer"], seen.table3["inner"]
     print(f"{name:12} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
-    far, patch = evaluate.hd95(over[name].patch, wide.truth), over[name].patch
-    print(f" {seen.score.dice:7.3f} {evaluate.dice(patch, wide.truth):14.3f} {far:9.2f}")
+    far, patch = scores.hd95(over[name].patch, wide.truth), over[name].patch
+    print(f" {seen.score.dice:7.3f} {scores.dice(patch, wide.truth):14.3f} {far:9.2f}")
 print("paper              1.10  2.89         0.72  3.16")
 
 # %% tags=["nbval-check-output"]
@@ -340,7 +345,7 @@ fig, (ax,) = classroom.axes(height=3.0)
 parabola = 75 - x**2 / 150
 lines = {f"order {n}": bridge(parabola, known, n, 1e4) - parabola for n in (2, 3)}
 classroom.plot_lines(ax, x, lines, xlabel="mm", ylabel="above the truth (mm)")
-ax.axvspan(-25, 25, color=plot.BONE, alpha=0.4)
+ax.axvspan(-25, 25, color=figures.BONE, alpha=0.4)
 alt = "Bridges minus a true parabola, the gap grey: order 2 is off in it, order 3 nowhere."
 classroom.picture(fig, alt, f"order 3: {np.abs(lines['order 3']).max():.3f} mm off at most")
 
@@ -371,7 +376,7 @@ for w, (colour, style) in zip((0.3, np.sqrt(0.5), 2.0), classroom.LINES, strict=
         ls=style,
         label=f"w = {w:.2f}",
     )
-ax.plot(*corner.T, "o--", color=plot.BLACK, lw=0.8, label="control points")
+ax.plot(*corner.T, "o--", color=figures.BLACK, lw=0.8, label="control points")
 ax.set(xlabel="mm", ylabel="mm", aspect="equal")
 ax.legend(fontsize=8)
 radius = np.linalg.norm(rational(corner, np.array([1, np.sqrt(0.5), 1]), t), axis=1)

@@ -7,9 +7,7 @@ from pathlib import Path
 import pytest
 from browser_lab import ARGS, browser_path, run_all, running_lab
 
-from cranio_nb import lab
-
-LESSONS = Path(lab.__file__).parents[1] / "notebooks"
+LESSONS = Path(__file__).parents[2] / "notebooks"
 
 
 @pytest.fixture(scope="session")

@@ -12,21 +12,28 @@ from PIL import Image
 
 CELLS = (
     """
-from cranio_nb import features, lesion, render, view3d, widgets
+import cranio_nb as cn
+from cranio_nb.drawing import scene3d, shading
+from cranio_nb.stages import feature_extraction
+from cranio_nb.teaching import widgets
 from cranio_nb.prosthesis import OUTER
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 case = phantom_case("tiny")
 ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
-one = lesion.find(bone)[0]
+one = cn.find_openings(bone)[0]
 plane = sum(one.planes) // 2
 """,
-    "widgets.features(bone, plane, opening=one.opening)",
+    "widgets.features(bone, plane, opening=one.sheet)",
     """
-ends, _ = features.gap_ends(features.slice_features(bone.voxels[plane]), one.opening.voxels[plane], skip=3, reach=8)
+seen = feature_extraction.slice_features(bone.voxels[plane])
+ends, _ = feature_extraction.gap_ends(seen, one.sheet.voxels[plane], skip=3, reach=8)
 widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels[plane])
 """,
-    'view3d.show(render.skull_surface(bone), colours=["#EDE7D8"], alt="A skull with a hole.", towards=one.direction)',
+    """
+skull = shading.skull_surface(bone)
+scene3d.show_meshes(skull, colours=["#EDE7D8"], alt="A skull with a hole.", towards=one.direction)
+""",
 )
 
 

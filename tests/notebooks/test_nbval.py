@@ -22,7 +22,7 @@ def test_every_lesson_gives_its_stored_output(tmp_path):
 
 def test_a_change_of_one_stage_is_seen(tmp_path):
     (tmp_path / "sitecustomize.py").write_text(
-        "import cranio_nb.balloon as stage\n"
+        "import cranio_nb.stages.deformable_model as stage\n"
         "right = stage.tangent_pressure\n"
         "stage.tangent_pressure = lambda *gap: 1.01 * right(*gap)\n"
     )

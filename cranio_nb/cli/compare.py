@@ -1,0 +1,110 @@
+"""The command `cranio-nb compare`: several methods on one case."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ..errors import InputRefused, NoOpening
+from ..methods.catalogue import METHODS
+from ..readers import ALLOWANCES
+
+if TYPE_CHECKING:
+    from ..pipeline.compare import Comparison, Measure
+
+_PATH = click.Path(path_type=Path)
+
+
+@click.command()
+@click.argument("scan", type=_PATH, metavar="INPUT")
+@click.option("--truth", type=_PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against.")
+@click.option("--out", type=_PATH, help="Folder for comparison.html, .csv and .json; made if missing.")
+@click.option(
+    "--method",
+    "methods",
+    multiple=True,
+    metavar="NAME",
+    help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated.  [default: all]",
+)
+@click.option("--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 need no telling.")
+@click.option("--threshold", type=float, metavar="HU", help="Lowest HU of bone.  [default: 400]")
+@click.option("--allow", multiple=True, type=click.Choice(ALLOWANCES), help="Relax one check of the reader.")
+def compare(
+    scan: Path,
+    truth: Path | None,
+    out: Path | None,
+    methods: tuple[str, ...],
+    mask: bool,
+    threshold: float | None,
+    allow: tuple[str, ...],
+) -> None:
+    """Let several methods close the same hole, and set them side by side.
+
+    The scan is read and segmented once; each method runs in a process of its own. A method that refuses is a row with
+    its reason; where none makes anything the exit code is 4. Without --out the table is printed and nothing is written.
+
+    \b
+    Examples:
+      cranio-nb compare case1/ct --truth case1/truth.nii.gz --out compared
+      cranio-nb compare skull.nii.gz --mask --method slicewise --method slicewise:paper
+    """
+    from ..output.comparison_page import FILES, write_comparison
+    from ..output.staging import check_folder, staged
+    from ..pipeline.compare import compare as run_all
+    from ..pipeline.run import prepare
+    from ..pipeline.trial import contenders
+    from .console import progress_bar
+
+    try:
+        asked = contenders(methods)
+    except InputRefused as error:
+        raise click.BadParameter(str(error), param_hint="--method") from None
+    if out is not None:
+        if out.resolve() == scan.resolve():
+            raise click.BadParameter("this is the input; nothing is ever written there.", param_hint="--out")
+        check_folder(out, FILES)
+    with progress_bar() as tell:
+        case = prepare(scan, mask=mask or None, threshold=threshold, truth=truth, allow=allow, progress=tell)
+        found = run_all(case, asked, progress=lambda name, done: tell(name, 0.4 + 0.5 * done))
+        if out is not None:
+            tell("report", 0.92)
+            with staged(out) as part:
+                write_comparison(found, part)
+    _print(found, out)
+    if not found.made:
+        raise click.exceptions.Exit(NoOpening.exit_code)
+
+
+def _print(found: Comparison, out: Path | None) -> None:
+    """The tables, the sentences of those that refused, and where to look."""
+    from ..output.comparison_page import tables
+    from ..pipeline.compare import MEASURES
+    from .console import print_table
+
+    for part in tables(found):
+        columns = {key: MEASURES[key] for key in part["keys"]}
+        rows = [
+            [trial.contender.name, *(_shown(row[key], what.digits) for key, what in columns.items())]
+            for trial, row in zip(found.trials, found.rows, strict=True)
+        ]
+        print_table(part["title"], ("", *(what.short for what in columns.values())), rows)
+        click.echo(click.wrap_text("; ".join(filter(None, map(_meaning, columns.values()))), 78, "  ", "  ") + "\n")
+    for trial in found.trials:
+        if trial.status != "done":
+            click.echo(f"{trial.contender.name}: {trial.status}: {trial.message}")
+    if out is not None:
+        click.echo(f"page: {out / 'comparison.html'}")
+
+
+def _shown(value: float, digits: int) -> str:
+    return "-" if value != value else f"{value:.{digits}f}"
+
+
+def _meaning(what: Measure) -> str:
+    """What a short head stands for; empty where it says all."""
+    unit = f" ({what.unit})" if what.unit else ""
+    if what.short == what.label:
+        return what.short + unit if unit else ""
+    return f"{what.short}: {what.label}{unit}"

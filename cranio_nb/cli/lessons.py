@@ -1,0 +1,83 @@
+"""The commands `cranio-nb lessons ...`: for authors and teachers."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+_PATH = click.Path(path_type=Path)
+
+
+@click.group()
+def lessons() -> None:
+    """Make the lesson notebooks from their texts; grade what students hand in.
+
+    \b
+    Examples:
+      cranio-nb lessons build
+      cranio-nb lessons html pages
+      cranio-nb lessons grade handed_in/*/04_balloon.ipynb
+    """
+
+
+@lessons.command()
+@click.option("--folder", type=_PATH, default=Path("notebooks"), show_default=True, help="Holds src/NN_topic.py.")
+@click.option("--only", default="", metavar="NN", help="Only lessons whose name starts so, e.g. 04.")
+@click.option("--check", is_flag=True, help="Write nothing; exit code 1 if the notebooks are out of step.")
+def build(folder: Path, only: str, check: bool) -> None:
+    """Run the lesson texts and write the notebooks and the copies with exercises.
+
+    \b
+    Examples:
+      cranio-nb lessons build
+      cranio-nb lessons build --check
+    """
+    from ..teaching.build import build as make
+    from ..teaching.build import out_of_step
+
+    if not check:
+        for path in make(folder, only):
+            click.echo(path)
+        return
+    problems = out_of_step(folder, only)
+    for problem in problems:
+        click.echo(problem, err=True)
+    if problems:
+        raise click.exceptions.Exit(1)
+
+
+@lessons.command()
+@click.argument("out", type=_PATH)
+@click.option("--folder", type=_PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+def html(out: Path, folder: Path) -> None:
+    """Write the lessons as web pages, every picture with its description; nothing is run.
+
+    \b
+    Example:
+      cranio-nb lessons html pages
+    """
+    from ..teaching.web_pages import write_pages
+
+    for path in write_pages(folder, out):
+        click.echo(path)
+
+
+@lessons.command()
+@click.argument("notebooks", nargs=-1, required=True, type=_PATH)
+def grade(notebooks: tuple[Path, ...]) -> None:
+    """Run notebooks that students hand in, and print the points of each exercise.
+
+    They are run as programs on this machine, with your rights: use a machine that you can spare.
+
+    \b
+    Example:
+      cranio-nb lessons grade handed_in/*/04_balloon.ipynb
+    """
+    from ..teaching.build import points
+
+    for path in notebooks:
+        found = points(path)
+        total = sum(got for got, _ in found.values())
+        each = "  ".join(f"{name}: {got}/{most}" for name, (got, most) in found.items())
+        click.echo(f"{path}  {total}/{sum(most for _, most in found.values())}  {each}")

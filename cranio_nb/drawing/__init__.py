@@ -1,0 +1,1 @@
+"""Arrays and meshes -> pictures. Matplotlib and pyvista are imported here only."""

@@ -1,0 +1,98 @@
+"""A design and the bone that is known to be missing -> how far apart they are.
+
+Frame: masks on the bone's grid; distances in mm, those of Table 3 in voxels as in the paper.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputRefused
+from ..mesh import Mesh
+from ..opening import Opening
+from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
+from ..stages import surface_reconstruction
+from ..volume import Volume
+from . import scores
+from .scores import Score
+
+SIDES = {"outer": OUTER, "inner": INNER}
+"""The sides that are measured, by name."""
+
+
+@dataclass(frozen=True, eq=False)
+class TruthCheck:
+    """A design against the bone that is known to be missing.
+
+    Parameters
+    ----------
+    prosthesis : Prosthesis
+        The truth as a mesh with sides.
+    score : Score
+        Overlap and surface distances of the voxels.
+    distances : dict
+        "outer" and "inner": distance in mm from each node of that side to the true one, shape (nodes,).
+    table3 : dict
+        "outer" and "inner": the same in voxels, summed up as in the paper's Table 3.
+    """
+
+    prosthesis: Prosthesis
+    score: Score
+    distances: dict[str, NDArray[np.float64]]
+    table3: dict[str, DistanceStats]
+
+
+def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Opening) -> TruthCheck:
+    """Measure a design against the missing bone.
+
+    Parameters
+    ----------
+    made : Prosthesis
+        With a patch.
+    truth : Volume
+        Bool mask of the missing bone on the grid of `bone`.
+    bone : Volume
+        The skull with the hole.
+    largest : Opening
+        Its head centre tells outside from inside.
+    """
+    return against(made, true_prosthesis(truth, bone, largest), bone)
+
+
+def true_prosthesis(truth: Volume, bone: Volume, largest: Opening) -> Prosthesis:
+    """The missing bone as a prosthesis: its mesh with sides. Parameters as in `check_truth`."""
+    mesh = surface_reconstruction.extract(truth)
+    return Prosthesis(mesh, surface_reconstruction.face_sides(mesh, bone, largest.head_centre), truth, "truth")
+
+
+def against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCheck:
+    """Measure a design against another prosthesis with a patch on the same grid; see `check_truth`."""
+    if made.patch is None or true.patch is None:
+        raise InputRefused("NoPatch", f"The method {made.method} makes no voxels to compare with a mask.")
+    score = scores.score(made.patch, true.patch, bone)
+    return TruthCheck(true, score, side_distances(made, true), table3(made, true, bone))
+
+
+def side_distances(made: Prosthesis, true: Prosthesis) -> dict[str, NDArray[np.float64]]:
+    """Side ("outer", "inner") -> distance in mm of each of its nodes to the true side, shape (nodes,).
+
+    Only sides that both have.
+    """
+    return {name: scores.surface_distance(own.vertices, other) for name, own, other in _both_sides(made, true)}
+
+
+def table3(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, DistanceStats]:
+    """Side -> a row of the paper's Table 3, in voxels of the bone's grid."""
+    found = {}
+    for name, own, other in _both_sides(made, true):
+        nodes = scores.in_voxels(own, bone).vertices
+        found[name] = scores.distance_stats(scores.surface_distance(nodes, scores.in_voxels(other, bone)))
+    return found
+
+
+def _both_sides(made: Prosthesis, true: Prosthesis) -> list[tuple[str, Mesh, Mesh]]:
+    sides = [(name, made.surface(side), true.surface(side)) for name, side in SIDES.items()]
+    return [(name, own, other) for name, own, other in sides if len(own.faces) and len(other.faces)]

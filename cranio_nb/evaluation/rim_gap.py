@@ -1,0 +1,79 @@
+"""A prosthesis and the bone around it -> how well its rim meets the bone.
+
+Frame: meshes in world mm, the bone a `Volume`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+from ..errors import InputRefused
+from ..mesh import Mesh
+from ..volume import Volume
+
+
+@dataclass(frozen=True)
+class GapStats:
+    """Distance from the rim of a prosthesis to the bone around it, mm; weighted by the area of the faces."""
+
+    mean: float
+    p95: float
+    max: float
+
+
+def rim_gap(rim: Mesh, bone: Volume) -> GapStats:
+    """How well a rim meets the bone.
+
+    Parameters
+    ----------
+    rim : Mesh
+        The rim faces of a prosthesis, world mm.
+    bone : Volume
+        Bool mask (P, R, C) of the skull with the hole.
+
+    Returns
+    -------
+    GapStats
+        Distance from each face's centre to the nearest bone voxel's box, 0 where they touch, weighted by face area.
+
+    Raises
+    ------
+    InputRefused
+        If the rim has no faces (EmptyMesh) or the skull no bone (NoBone).
+    """
+    if not len(rim.faces):
+        raise InputRefused("EmptyMesh", "The prosthesis has no rim; a gap needs one.")
+    gap = distance_to_voxels(rim.centres, bone)
+    order = np.argsort(gap)
+    share = np.cumsum(rim.areas[order]) / rim.areas.sum()
+    p95 = gap[order][min(int(np.searchsorted(share, 0.95)), len(gap) - 1)]
+    return GapStats(float(np.average(gap, weights=rim.areas)), float(p95), float(gap.max()))
+
+
+def distance_to_voxels(points: NDArray[np.float64], mask: Volume) -> NDArray[np.float64]:
+    """Distance in mm from world points, shape (N, 3), to the boxes of a mask's voxels, shape (N,); 0 inside.
+
+    The nearest box is looked for among the eight surface voxels whose centres are nearest.
+    """
+    surface = np.argwhere(mask.voxels & ~ndimage.binary_erosion(mask.voxels))
+    if not len(surface):
+        raise InputRefused("NoBone", "The bone mask is empty; a gap needs bone.")
+    at = mask.to_voxel(points)
+    _, near = cKDTree(mask.to_world(surface)).query(points, k=np.arange(1, 1 + min(8, len(surface))))
+    step = at[:, None] - surface[near]
+    outside = step - np.clip(step, -0.5, 0.5)
+    gap = np.linalg.norm(outside @ mask.affine[:3, :3].T, axis=2).min(axis=1)
+    gap[_holds(mask, at)] = 0
+    return gap
+
+
+def _holds(mask: Volume, at: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether fractional voxel indices, shape (N, 3), fall into a true voxel."""
+    index = np.rint(at).astype(int)
+    known = np.flatnonzero(((index >= 0) & (index < mask.shape)).all(axis=1))
+    return np.isin(np.arange(len(at)), known[mask.voxels[tuple(index[known].T)]])

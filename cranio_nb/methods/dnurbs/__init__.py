@@ -1,0 +1,1 @@
+"""D-NURBS (Qin and Terzopoulos 1996): two elastic sheets across the hole."""

@@ -1,0 +1,249 @@
+"""A rival in the paper's outlook: two elastic sheets, pulled to the bone around the hole and left to themselves in it.
+
+Bone mask in, `Prosthesis` out. Source: Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric
+design", IEEE TVCG 2(1). Faithful are the rational surface, its control points and weights as generalised coordinates,
+the thin plate under tension, the springs to data, and Lagrange's equations (`sheet`, `sheet_motion`).
+
+Ours is what makes a prosthesis of it. The vault around the hole is seen along rays (`chart`); every ray that meets
+sound bone is a spring from the bone's outer surface to the place of that ray on the outer sheet, and so inside.
+Springs far off the sheet are weakened, so that a suture or a ridge does not dent it. The rigidity follows from a
+wavelength l: with one spring for each ray, a ripple of the bone of wavelength l is halved, shorter ones vanish,
+longer ones pass:
+
+    rigidity = k (l / (2 pi))^4,    k the springs' strength per mm2.
+
+A plate that wants to be plane fills a wide hole too flat. So the natural shape of each sheet, free of stress, is the
+sphere that fits its springs best, and bending is counted from there.
+
+The sheets at rest are read along the rays again; between them lies the patch. With weights frozen at 1, the default,
+rest is found at once by a sparse solve. With `free_weights` the sheet moves from there to its own rest by steps
+(`sheet_motion.relax`; a lesson can watch any of it).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from ...errors import NoOpening
+from ...opening import Opening
+from ...prosthesis import Prosthesis
+from ...stages import prosthesis_volume
+from ...vault import opening_search, radius_map
+from ...volume import Volume
+from ..assembly import assemble
+from . import sheet, sheet_motion
+from .sheet import Material, Sheet, Springs
+from .sheet_motion import Dynamics, Motion, Setting
+
+_ROUNDS = 5  # of weakening springs and settling again
+_SPHERE_ROUNDS = 8  # of fitting the sphere to what is not far off it
+_FIND_STEPS = 6  # of looking up where a ray meets the sheet
+
+
+@dataclass(frozen=True, eq=False)
+class Sheets:
+    """What the method made of one hole; for pictures and lessons.
+
+    Parameters
+    ----------
+    vault : RadialChart
+        The bone around the hole.
+    outer, inner : Sheet
+        At rest, in mm along the chart's axes from its eye.
+    settings : tuple of Setting
+        Springs with their last strengths, natural shape and material of the outer and the inner sheet, same frame.
+    n_iter : tuple of int
+        Steps of the outer and the inner sheet; 0 where one solve was enough.
+    converged : tuple of bool
+        Whether each came to rest.
+    """
+
+    vault: radius_map.RadialChart
+    outer: Sheet
+    inner: Sheet
+    settings: tuple[Setting, Setting]
+    n_iter: tuple[int, int]
+    converged: tuple[bool, bool]
+
+
+def design(
+    bone: Volume,
+    openings: Sequence[Opening] | None = None,
+    *,
+    wavelength: float = 20.0,
+    tension: float = 0.0,
+    span: float = 8.0,
+    free_weights: bool = False,
+    tol: float = 1e-2,
+    max_iter: int = 40,
+    smooth: bool = True,
+    progress: Callable[[str, float], None] | None = None,
+) -> Prosthesis:
+    """Design a prosthesis between two elastic sheets.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull, planes rising to the top of the head.
+    openings : sequence of Opening, optional
+        Openings to close; found automatically when not given.
+    wavelength : float
+        Ripples of the bone of this length in mm are halved; the rigidity follows from it.
+    tension : float
+        mm2, of springs of unit strength per mm2: 0 for a plate, more for a membrane, which fills flatter.
+    span : float
+        mm between the knots of the sheets.
+    free_weights : bool
+        Whether the weights move too.
+    tol, max_iter
+        As for `sheet_motion.relax`, in mm; only with free weights.
+    smooth : bool
+        Surface without stairs (see `surface.extract`).
+    progress : callable, optional
+        Called with (stage, fraction done).
+
+    Returns
+    -------
+    Prosthesis
+        `record["sheets"]` tells of every sheet; `working` holds `Sheets` per opening.
+
+    Raises
+    ------
+    NoOpening
+        When the vault is closed, or nothing lies between the sheets.
+    """
+    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
+    tell = progress or (lambda stage, done: None)
+    began = time.perf_counter()
+    openings = opening_search.find_openings(bone) if openings is None else openings
+    dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
+    plate = {"wavelength": wavelength, "tension": tension, "span": span}
+    working, patch = [], np.zeros(bone.shape, bool)
+    for i, one in enumerate(openings):
+        tell("sheets", 0.9 * i / len(openings))
+        made = fit(radius_map.look(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
+        radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
+        piece = radius_map.voxelise(made.vault, *radius_map.thickened(made.vault, *radii), bone)
+        patch |= prosthesis_volume.main_piece(piece, one.sheet.voxels)
+        working.append(made)
+    if not patch.any():
+        raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")
+    tell("surface", 0.9)
+    sheets = [entry for made in working for entry in _entries(made)]
+    return assemble(patch, bone, openings, "dnurbs", options, began=began, working=working, record={"sheets": sheets})
+
+
+def fit(
+    vault: radius_map.RadialChart,
+    *,
+    wavelength: float,
+    tension: float,
+    span: float,
+    dynamics: Dynamics | None = None,
+    tol: float = 1e-2,
+    max_iter: int = 40,
+) -> Sheets:
+    """Both sheets of one hole at rest.
+
+    Parameters
+    ----------
+    vault : RadialChart
+    wavelength, tension, span, tol, max_iter
+        As for `design`.
+    dynamics : Dynamics, optional
+        How the sheets move on from where frozen weights leave them; they stay there when not given.
+    """
+    spans = (max(round((len(vault.outer) - 1) * vault.mm / span), 4),) * 2
+    size = (len(vault.outer) - 1) * vault.mm / spans[0]
+    material = Material.plate(tension, (wavelength / (2 * np.pi)) ** 4, (size, size))
+    rests, settings = [], []
+    for radius in (vault.outer, vault.inner):
+        springs = springs_to(vault, radius, spans)
+        natural = _sphere(springs.points, vault, spans)
+        rest, springs = sheet.settle(springs, natural, material, rounds=_ROUNDS)
+        settings.append(Setting(springs, natural, material))
+        rests.append(Motion(rest, np.zeros(0), 0.0, converged=True))
+    if dynamics is not None:
+        rests = [
+            sheet_motion.relax(sheet_motion.start(m.sheet, s, dynamics), s, dynamics, tol=tol, max_iter=max_iter)
+            for m, s in zip(rests, settings, strict=True)
+        ]
+    outer, inner = rests
+    counts, ends = (outer.n_iter, inner.n_iter), (outer.converged, inner.converged)
+    return Sheets(vault, outer.sheet, inner.sheet, (settings[0], settings[1]), counts, ends)
+
+
+def springs_to(vault: radius_map.RadialChart, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
+    """A spring to one surface of the bone for every ray beside the hole that meets it, of unit strength per mm2.
+
+    Parameters
+    ----------
+    vault : RadialChart
+    radius : ndarray, shape (M, M)
+        The vault's outer or inner radii.
+    spans : tuple of int
+        Of the sheet.
+    """
+    known = np.isfinite(radius) & ~vault.hole
+    points = (vault.directions[known] * radius[known][:, None]) @ vault.axes.T
+    v, u = (i * n / (len(radius) - 1) for i, n in zip(np.nonzero(known), spans, strict=True))
+    return Springs(points, v, u, np.full(len(points), vault.mm**2))
+
+
+def radii_of(one: Sheet, vault: radius_map.RadialChart) -> NDArray[np.float64]:
+    """Radius of a sheet along every ray into the hole or near it, shape (M, M), mm; nan elsewhere.
+
+    Parameters
+    ----------
+    one : Sheet
+        In mm along the chart's axes from its eye.
+    vault : RadialChart
+    """
+    near = ndimage.binary_dilation(vault.hole, iterations=3)
+    wanted = np.argwhere(near).astype(float)
+    scale = np.array(one.spans) / (len(vault.outer) - 1)
+    at = wanted
+    for _ in range(_FIND_STEPS):
+        points = one.at(*(at * scale).T)
+        at = np.clip(at + wanted - vault.locate(points @ vault.axes).T, 0, len(vault.outer) - 1)
+    radius = np.full(vault.hole.shape, np.nan)
+    radius[near] = np.linalg.norm(one.at(*(at * scale).T), axis=1)
+    return radius
+
+
+def _sphere(points: NDArray[np.float64], vault: radius_map.RadialChart, spans: tuple[int, int]) -> Sheet:
+    """The sheet on the sphere that best fits points around the hole, each ray at its own place."""
+    system = np.column_stack([2 * points, np.ones(len(points))])
+    squares, weight = (points**2).sum(axis=1), np.ones(len(points))
+    for _ in range(_SPHERE_ROUNDS):
+        x = np.linalg.lstsq(system * weight[:, None], squares * weight, rcond=None)[0]
+        radius = np.sqrt(x[3] + x[:3] @ x[:3])
+        off = np.abs(np.linalg.norm(points - x[:3], axis=1) - radius)
+        weight = 1 / (1 + (off / (3 * np.median(off) + 1e-6)) ** 2)
+    along = vault.directions @ vault.axes.T
+    middle = along @ x[:3]
+    away = middle + np.sqrt(np.maximum(middle**2 + x[3], 0.0))
+    v, u = np.indices(away.shape).reshape(2, -1) * np.array(spans)[:, None] / (len(away) - 1)
+    springs = Springs((along * away[..., None]).reshape(-1, 3), v, u, np.ones(away.size))
+    return sheet.settle(springs, sheet.flat(spans), Material((0.0, 0.0, 1e-6, 1e-6, 1e-6)))[0]
+
+
+def _inside(vault: radius_map.RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+    """A radius map with nan outside the hole."""
+    return np.where(vault.hole, radius, np.nan)
+
+
+def _entries(made: Sheets) -> list[dict[str, Any]]:
+    """JSON-able record of the outer and the inner sheet."""
+    weights = [(float(part.weights.min()), float(part.weights.max())) for part in (made.outer, made.inner)]
+    return [
+        {"spans": list(made.outer.spans), "weights": list(w), "n_iter": n, "converged": c}
+        for w, n, c in zip(weights, made.n_iter, made.converged, strict=True)
+    ]

@@ -1,0 +1,1 @@
+"""Designs -> files and pages, all of them or none."""

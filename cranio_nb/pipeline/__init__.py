@@ -1,0 +1,1 @@
+"""Scan -> design: one run, one trial of a method, several methods compared."""

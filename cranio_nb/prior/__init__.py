@@ -1,0 +1,1 @@
+"""What intact skulls let one predict of the bone in a hole."""

@@ -1,0 +1,163 @@
+"""Slice headers -> a stack in order, and how far the headers are from it. World is DICOM LPS, lengths in mm.
+
+One test decides: the corners of every slice by its own header against the corners by the stack's straight line.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputRefused
+from .headers import SliceHeader, Vector
+
+CORNER_TOL = 0.05  # mm
+MAX_STEP = 5.0  # mm between slices
+MAX_STEP_RATIO = 4.0  # widest to narrowest step that is resampled
+MIN_SLICES = 8
+SAME_PLACE = 1e-3  # mm
+_SPACING_RANGE = (0.05, 10.0)  # mm in the plane
+_REMEDY = "Export the series again from its source."
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """Slices in the order of their height.
+
+    Parameters
+    ----------
+    headers : tuple of SliceHeader
+        N of them, from the lowest to the highest.
+    origin : ndarray, shape (3,)
+        Centre of the first pixel of the lowest slice, mm.
+    along_cols, along_rows : ndarray, shape (3,)
+        Unit directions in which the column and the row index grow.
+    normal : ndarray, shape (3,)
+        Unit direction in which the height grows.
+    spacing : ndarray, shape (2,)
+        mm between rows, and between columns.
+    heights : ndarray, shape (N,)
+        mm along the normal, from 0.
+    shear : ndarray, shape (3,)
+        mm that a slice slides in its own plane for each mm of height; zero in an upright stack.
+    """
+
+    headers: tuple[SliceHeader, ...]
+    origin: Vector
+    along_cols: Vector
+    along_rows: Vector
+    normal: Vector
+    spacing: Vector
+    heights: Vector
+    shear: Vector
+
+    @property
+    def extent(self) -> float:
+        """Mm from the lowest to the highest slice."""
+        return float(self.heights[-1])
+
+    def corner_errors(self, heights: Vector) -> Vector:
+        """Distance in mm, shape (N,), of each slice's worst corner from where the stack puts it at given heights."""
+        origins = self.origin + heights[:, None] * (self.normal + self.shear)
+        model = _corners(origins, self.along_cols, self.along_rows, self.spacing, self.headers[0])
+        own = np.stack([_own_corners(header) for header in self.headers])
+        return np.linalg.norm(own - model, axis=-1).max(axis=-1)
+
+
+def axes_of(orientation: Vector) -> tuple[Vector, Vector, Vector]:
+    """Unit directions of the column index, the row index and the normal, the normal's largest part positive.
+
+    Raises
+    ------
+    InputRefused
+        ``BadGeometry`` unless the two directions are unit vectors at right angles within 1e-3.
+    """
+    cols, rows = orientation[:3], orientation[3:]
+    gram = np.array([cols @ cols, rows @ rows, cols @ rows])
+    if not np.isfinite(gram).all() or np.abs(gram - [1, 1, 0]).max() > 2e-3:
+        raise bad_geometry("The slice directions (ImageOrientationPatient) are not unit vectors at right angles.")
+    cols = cols / np.linalg.norm(cols)
+    rows = rows - (rows @ cols) * cols
+    rows = rows / np.linalg.norm(rows)
+    normal = np.cross(cols, rows)
+    return cols, rows, normal * np.sign(normal[np.abs(normal).argmax()]) + 0.0
+
+
+def check_geometry(headers: list[SliceHeader]) -> None:
+    """Refuse slices whose position, orientation or pixel spacing is absent or no number (``BadGeometry``)."""
+    for index, header in enumerate(headers):
+        for name, value in (
+            ("ImagePositionPatient", header.position),
+            ("ImageOrientationPatient", header.orientation),
+            ("PixelSpacing", header.spacing),
+        ):
+            if value is None or not np.isfinite(value).all():
+                what = "has no" if value is None else "has an unreadable"
+                raise bad_geometry(f"Slice {index} (in file order) {what} {name}.")
+        low, high = _SPACING_RANGE
+        if header.spacing is None or header.spacing.min() < low or header.spacing.max() > high:
+            raise bad_geometry(f"Slice {index} (in file order) has a PixelSpacing outside {low} to {high} mm.")
+
+
+def bad_geometry(message: str) -> InputRefused:
+    """The refusal for geometry that cannot be trusted; nothing is guessed from file order or slice numbers."""
+    return InputRefused("BadGeometry", message, _REMEDY)
+
+
+def by_height(headers: list[SliceHeader]) -> tuple[list[SliceHeader], NDArray[np.float64]]:
+    """Headers sorted along the normal, and their heights in mm from 0."""
+    *_, normal = axes_of(_orientation(headers[0]))
+    heights = np.array([header.position for header in headers]) @ normal
+    order = np.argsort(heights, kind="stable")
+    return [headers[i] for i in order], heights[order] - heights[order[0]]
+
+
+def build_stack(headers: list[SliceHeader]) -> Stack:
+    """The straight stack through checked headers, one per height.
+
+    Raises
+    ------
+    InputRefused
+        ``BadGeometry`` where all slices lie at one place, or a corner is more than `CORNER_TOL` mm off.
+    """
+    ordered, heights = by_height(headers)
+    if heights[-1] < SAME_PLACE:
+        raise bad_geometry(f"All {len(headers)} slices lie at one position.")
+    cols, rows, normal = axes_of(_orientation(ordered[0]))
+    positions = np.array([header.position for header in ordered])
+    origin, direction = _line(positions, heights)
+    spacing = np.asarray(ordered[0].spacing, float)
+    shear = direction - (direction @ normal) * normal
+    shear[np.abs(shear) * heights[-1] < 1e-6] = 0  # rounding of the fit
+    stack = Stack(tuple(ordered), origin, cols, rows, normal, spacing, heights, shear)
+    errors = stack.corner_errors(heights)
+    worst = int(errors.argmax())
+    if errors[worst] > CORNER_TOL:
+        raise bad_geometry(f"Slice {worst} lies {errors[worst]:.2f} mm off the straight stack of the others.")
+    return stack
+
+
+def _line(positions: Vector, heights: Vector) -> tuple[Vector, Vector]:
+    """Least-squares line: position = origin + height * direction."""
+    design = np.stack([np.ones_like(heights), heights], axis=1)
+    (origin, direction), *_ = np.linalg.lstsq(design, positions, rcond=None)
+    return origin, direction
+
+
+def _corners(origin: Vector | None, cols: Vector, rows: Vector, spacing: Vector | None, header: SliceHeader) -> Vector:
+    """Corners of slices whose first pixels are at `origin`, shape (..., 4, 3)."""
+    down, right = np.asarray(spacing) * (header.rows - 1, header.cols - 1)
+    steps = np.array([[0, 0], [0, right], [down, 0], [down, right]]) @ np.stack([rows, cols])
+    return np.asarray(origin)[..., None, :] + steps
+
+
+def _own_corners(header: SliceHeader) -> Vector:
+    """Corners of one slice by its own header, shape (4, 3)."""
+    iop = _orientation(header)
+    return _corners(header.position, iop[:3], iop[3:], header.spacing, header)
+
+
+def _orientation(header: SliceHeader) -> Vector:
+    return np.asarray(header.orientation, float)

@@ -1,0 +1,142 @@
+"""Stack of slices -> the even steps at which the volume will stand, or why there are none. Lengths in mm."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InputRefused
+from ..load_report import Finding
+from ..regrid import even_heights, missing_gaps
+from .geometry import CORNER_TOL, MAX_STEP, MAX_STEP_RATIO, MIN_SLICES, Stack, bad_geometry
+from .scan import MAX_SLICES
+
+_MIN_STEP = 0.05
+_REMEDY = "A head CT in thin slices, up to 2 mm apart, is best."
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """How the slices become planes.
+
+    Parameters
+    ----------
+    step : float
+        mm between planes.
+    wanted : ndarray or None
+        Heights in mm to interpolate at; None where the slices are the planes.
+    corner_error : float
+        Largest distance in mm between a slice's corner by its header and by the affine.
+    findings : list of Finding
+    """
+
+    step: float
+    wanted: NDArray[np.float64] | None
+    corner_error: float
+    findings: list[Finding]
+
+
+def plan_steps(stack: Stack, allow: Collection[str] = ()) -> Plan:
+    """How the slices become an even stack.
+
+    Parameters
+    ----------
+    stack : Stack
+        One slice per height.
+    allow : collection of str
+        ``"gap_fill"`` interpolates missing slices.
+
+    Raises
+    ------
+    InputRefused
+        ``MissingSlices``, ``TooFewSlices``, ``SlicesTooFarApart``, ``UnevenSpacing``, ``BadGeometry``.
+    """
+    gaps = np.diff(stack.heights)
+    gone = missing_gaps(stack.heights, [header.instance for header in stack.headers])
+    if gone and "gap_fill" not in allow:
+        raise _missing(stack, gone, gaps)
+    if len(stack.headers) < MIN_SLICES:
+        message = f"The series has {len(stack.headers)} slices; at least {MIN_SLICES} are wanted."
+        raise InputRefused("TooFewSlices", message, "Give the folder with all slices of a head CT.")
+    if gaps.max() > MAX_STEP + 0.02:
+        message = f"Slices are up to {gaps.max():.2f} mm apart; at most {MAX_STEP:g} mm are read."
+        raise InputRefused("SlicesTooFarApart", message, _REMEDY)
+    if gaps.min() < _MIN_STEP:
+        raise bad_geometry(f"Two slices are only {gaps.min():.3f} mm apart.")
+    findings = _numbering(stack) + _thickness(stack, float(np.median(gaps)))
+    step = stack.extent / (len(stack.headers) - 1)
+    error = float(stack.corner_errors(step * np.arange(len(gaps) + 1, dtype=float)).max())
+    if error <= CORNER_TOL and np.abs(gaps - step).max() <= max(0.02, 0.005 * step):
+        return Plan(step, None, error, findings)
+    return _even_plan(stack, gaps, gone, findings)
+
+
+def _even_plan(stack: Stack, gaps: NDArray[np.float64], gone: list[int], findings: list[Finding]) -> Plan:
+    low, high = float(gaps.min()), float(gaps.max())
+    if high > MAX_STEP_RATIO * low and not gone:
+        message = f"Slices are between {low:.2f} and {high:.2f} mm apart: too uneven to be interpolated."
+        raise InputRefused("UnevenSpacing", message, _REMEDY)
+    wanted = even_heights(stack.heights, low)
+    if len(wanted) > MAX_SLICES:
+        raise bad_geometry(f"Even steps of {low:.2f} mm would need {len(wanted)} slices.")
+    step = float(wanted[1] - wanted[0])
+    message = f"Slices {low:.2f} to {high:.2f} mm apart were interpolated to even steps of {step:.3f} mm."
+    values = {"min_mm": low, "max_mm": high, "step_mm": step}
+    findings = [*findings, Finding("UnevenSpacing", "corrected", message, values)]
+    if gone:
+        findings.append(_filled(stack, gone, wanted))
+    return Plan(step, wanted, float(stack.corner_errors(stack.heights).max()), findings)
+
+
+def _filled(stack: Stack, gone: list[int], wanted: NDArray[np.float64]) -> Finding:
+    """Which planes (of the stack, from below) stand on interpolated data only."""
+    ranges = [(float(stack.heights[i]), float(stack.heights[i + 1])) for i in gone]
+    planes = [k for k, h in enumerate(wanted) if any(a + 1e-3 < h < b - 1e-3 for a, b in ranges)]
+    places = "1 place" if len(gone) == 1 else f"{len(gone)} places"
+    message = f"Missing slices were filled by interpolation at {places}: do not design across them."
+    return Finding("GapsFilled", "warning", message, {"planes_from_below": planes, "heights_mm": ranges})
+
+
+def _missing(stack: Stack, gone: list[int], gaps: NDArray[np.float64]) -> InputRefused:
+    base = float(np.median(gaps))
+    positions = [float(np.asarray(stack.headers[i].position)[2]) for i in gone]
+    listed = ", ".join(
+        f"after slice {i} (z = {z:.1f} mm, {gaps[i]:.2f} mm wide)" for i, z in zip(gone[:4], positions, strict=False)
+    )
+    more = f" and {len(gone) - 4} more places" if len(gone) > 4 else ""
+    message = f"Slices are missing {listed}{more}; the others are {base:.2f} mm apart."
+    return InputRefused("MissingSlices", message, "Export the complete series again.")
+
+
+def _numbering(stack: Stack) -> list[Finding]:
+    """A remark where slice numbers do not run from 1 without holes: slices may be missing."""
+    numbers = _numbers(stack)
+    if not numbers or (numbers[0] in (0, 1) and numbers[-1] - numbers[0] == len(numbers) - 1):
+        return []
+    message = f"{len(numbers)} slices are numbered from {numbers[0]} to {numbers[-1]}: some may be missing."
+    values = {"first": numbers[0], "last": numbers[-1], "slices": len(numbers)}
+    return [Finding("SliceNumbers", "warning", message, values)]
+
+
+def _numbers(stack: Stack) -> list[int]:
+    """The slices' own numbers in rising order; empty where not every slice has one."""
+    numbers = sorted(h.instance for h in stack.headers if h.instance is not None)
+    return numbers if len(numbers) == len(stack.headers) else []
+
+
+def _thickness(stack: Stack, step: float) -> list[Finding]:
+    """Remarks where steps do not fit thickness and pixels; a refusal where slice numbers say that slices are gone."""
+    thick = max((h.thickness for h in stack.headers if h.thickness is not None and h.thickness > 0), default=step)
+    values = {"step_mm": step, "thickness_mm": thick, "pixel_mm": float(stack.spacing.min())}
+    message = f"Slices are {step:.2f} mm apart but {thick:.2f} mm thick"
+    if step < 0.2 * max(thick, values["pixel_mm"]):
+        message += f" with pixels of {values['pixel_mm']:.2f} mm: are the positions in mm?"
+        return [Finding("SmallSteps", "warning", message, values)]
+    if step <= 1.5 * thick:
+        return []
+    if _numbers(stack) and np.diff(_numbers(stack)).min() > 1:
+        raise InputRefused("MissingSlices", f"{message}, and their numbers jump.", "Export the complete series again.")
+    return [Finding("ThinSlices", "warning", f"{message}: there are gaps between them.", values)]

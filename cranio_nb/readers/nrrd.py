@@ -1,0 +1,184 @@
+"""NRRD stream -> `Image`: pynrrd reads the header, the voxels are read here, bounded by what it declares."""
+
+from __future__ import annotations
+
+import bz2
+import gzip
+import warnings
+import zlib
+from collections.abc import Collection
+from typing import Any, BinaryIO, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InputRefused
+from ..volume import Affine
+from .image import Image, check_rest, no_orientation, read_exactly, spatial_shape
+from .load_report import Finding
+
+# sign of (x, y, z) from the file's frame to LPS
+_SPACES = {
+    "left-posterior-superior": (1, 1, 1),
+    "lps": (1, 1, 1),
+    "right-anterior-superior": (-1, -1, 1),
+    "ras": (-1, -1, 1),
+    "left-anterior-superior": (1, -1, 1),
+    "las": (1, -1, 1),
+}
+_MM_PER_UNIT = {"mm": 1.0, "millimeter": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "": 1.0}
+_ENCODINGS = {"raw", "gzip", "gz", "bzip2", "bz2"}
+_TYPES = {
+    "i1": ("signed char", "int8", "int8_t"),
+    "u1": ("uchar", "unsigned char", "uint8", "uint8_t"),
+    "i2": ("short", "short int", "signed short", "signed short int", "int16", "int16_t"),
+    "u2": ("ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"),
+    "i4": ("int", "signed int", "int32", "int32_t"),
+    "u4": ("uint", "unsigned int", "uint32", "uint32_t"),
+    "i8": ("longlong", "long long", "long long int", "signed long long", "int64", "int64_t"),
+    "u8": ("ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"),
+    "f4": ("float",),
+    "f8": ("double",),
+}
+_DTYPES = {name: code for code, names in _TYPES.items() for name in names}
+
+
+def read_nrrd(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
+    """Image of a NRRD file that holds its own voxels.
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptFile``, ``UnsupportedFile``, ``UnsupportedPixels``, ``BadShape``, ``LimitExceeded``,
+        ``NoOrientation`` or ``BadGeometry``.
+    """
+    header = _header(stream)
+    sizes = [int(n) for n in header["sizes"]]
+    directions = _directions(header, len(sizes))
+    space = [i for i, row in enumerate(directions) if row is not None] if directions else list(range(len(sizes)))
+    if len(space) != 3 and any(size != 1 for size in sizes[3:]):
+        spatial_shape(sizes)
+    if directions and (len(space) != 3 or any(sizes[i] != 1 for i in range(len(sizes)) if i not in space)):
+        raise _unsupported(f"has {len(space)} axes in space and others besides", "BadShape")
+    shape = spatial_shape([sizes[i] for i in space])
+    dtype = _dtype(header)
+    content, rest = _voxel_bytes(stream, header, int(np.prod(shape)) * dtype.itemsize)
+    raw = np.frombuffer(content, dtype)
+    affine, findings = _affine(header, [directions[i] for i in space] if directions else None, allow)
+    native = raw.reshape(shape, order="F").astype(dtype.newbyteorder("="), copy=False)
+    return Image("NRRD", native, affine, findings=tuple(findings + rest))
+
+
+def _header(stream: BinaryIO) -> dict[str, Any]:
+    import nrrd
+
+    try:
+        with warnings.catch_warnings():
+            # remarks on doubled fields; the values are checked here
+            warnings.simplefilter("ignore")
+            header = dict(nrrd.read_header(cast(Any, stream)))
+        for field in ("type", "sizes", "dimension", "encoding"):
+            if field not in header:
+                raise _corrupt(f"its header has no {field}")
+    except InputRefused:
+        raise
+    except Exception as error:
+        raise _corrupt(f"its header cannot be parsed ({type(error).__name__})") from None
+    start = stream.tell()
+    stream.seek(0)
+    lines = [line for line in stream.read(start).split(b"\n") if not line.startswith(b"#") and b":=" not in line]
+    if not b"".join(lines).isascii():
+        raise _corrupt("its header holds characters that do not belong there")
+    if "data file" in header or "datafile" in header:
+        message = "The voxels of this NRRD file lie in a second file."
+        raise InputRefused("UnsupportedFile", message, "Give a single .nrrd file that holds its voxels.")
+    if int(header["dimension"]) != len(header["sizes"]):
+        raise _corrupt("its dimension and sizes disagree")
+    return header
+
+
+def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[bytearray, list[Finding]]:
+    """The declared bytes of voxels, and a remark where there are more."""
+    encoding = str(header["encoding"]).lower()
+    skips = [int(header.get(name, 0)) for name in ("line skip", "lineskip", "byte skip", "byteskip")]
+    if encoding not in _ENCODINGS or any(skips):
+        what = "skips lines or bytes" if any(skips) else f"has the encoding {_plain(encoding)}"
+        raise _unsupported(what)
+    data = stream
+    if encoding in ("gzip", "gz"):
+        data = cast(BinaryIO, gzip.GzipFile(fileobj=stream))
+    elif encoding in ("bzip2", "bz2"):
+        data = cast(BinaryIO, bz2.BZ2File(stream))
+    try:
+        return read_exactly(data, count), check_rest(data)
+    except (EOFError, OSError, zlib.error) as error:
+        raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
+
+
+def _dtype(header: dict[str, Any]) -> np.dtype:
+    name = str(header["type"]).lower().strip()
+    if name not in _DTYPES:
+        raise _unsupported(f"has voxels of the type {_plain(name)}", "UnsupportedPixels")
+    dtype = np.dtype(_DTYPES[name])
+    endian = str(header.get("endian", "")).lower()
+    if dtype.itemsize > 1 and endian not in ("little", "big"):
+        raise _corrupt("it does not state its byte order")
+    return dtype.newbyteorder(">" if endian == "big" else "<")
+
+
+def _directions(header: dict[str, Any], dimension: int) -> list[NDArray[np.float64] | None]:
+    """One vector per axis, None for an axis outside space; empty where the file has none."""
+    rows = header.get("space directions")
+    if rows is None:
+        return []
+    vectors = [None if row is None or np.isnan(row).all() else np.asarray(row, float) for row in rows]
+    if len(vectors) != dimension or any(v is not None and v.shape != (3,) for v in vectors):
+        raise _corrupt("its space directions do not fit its dimension")
+    return vectors
+
+
+def _affine(
+    header: dict[str, Any], directions: list[NDArray[np.float64] | None] | None, allow: Collection[str]
+) -> tuple[Affine, list[Finding]]:
+    """Index -> LPS mm."""
+    signs = _SPACES.get(str(header.get("space", "")).lower())
+    findings = []
+    if directions is None or signs is None:
+        if "no_orientation" not in allow:
+            raise no_orientation("The file states no anatomical space with directions: it does not say where left is.")
+        message = "The file has no orientation: its axes were taken as left, back and top."
+        findings.append(Finding("NoOrientation", "warning", message, {}))
+    signs = signs or (1, 1, 1)
+    if directions is None:
+        spacings = header.get("spacings", (np.nan,) * 3)
+        columns = np.diag([float(s) for s in spacings[:3]])
+    else:
+        columns = np.stack([np.full(3, np.nan) if d is None else d for d in directions], axis=1)
+    origin = header.get("space origin")
+    if origin is None:
+        findings.append(Finding("NoOrigin", "warning", "The file states no origin: (0, 0, 0) was taken.", {}))
+    affine = np.eye(4)
+    affine[:3, :3], affine[:3, 3] = columns, np.zeros(3) if origin is None else np.asarray(origin, float)
+    affine[:3] *= _unit(header)
+    return np.diag([*signs, 1.0]) @ affine, findings
+
+
+def _unit(header: dict[str, Any]) -> float:
+    """Mm per unit of the file's space."""
+    names = header.get("space units")
+    units = {str(u).strip().lower() for u in (names if names is not None else ["mm"])}
+    if len(units) != 1 or not units <= set(_MM_PER_UNIT):
+        raise InputRefused("BadGeometry", "The file's unit of length is not known.", "Convert the file to mm.")
+    return _MM_PER_UNIT[units.pop()]
+
+
+def _plain(text: str) -> str:
+    return "".join(c for c in text if c.isascii() and (c.isalnum() or c in " -_"))[:24]
+
+
+def _corrupt(what: str) -> InputRefused:
+    return InputRefused("CorruptFile", f"The NRRD file is damaged: {what}.", "Copy the file again from its source.")
+
+
+def _unsupported(what: str, code: str = "UnsupportedFile") -> InputRefused:
+    return InputRefused(code, f"The NRRD file {what}.", "Save it as one 3-D volume, raw or gzip.")

@@ -1,0 +1,1 @@
+"""The lessons: their case, panels, exercises, checks, and how notebooks are built and opened."""

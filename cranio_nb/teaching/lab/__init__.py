@@ -1,0 +1,1 @@
+"""JupyterLab, set up for the lessons."""

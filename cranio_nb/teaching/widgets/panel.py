@@ -1,0 +1,89 @@
+"""Controls as plain values and a function from them to a picture -> something a notebook shows.
+
+A panel is the same in both modes up to its front: `live` puts real controls before it, here it is one picture.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import Any
+
+from ...drawing.described import Bundle, bundle, encoded_png
+from ...drawing.front_end import mode
+from ...errors import CranioError, InputRefused
+from .controls import Control, View
+
+
+class Panel:
+    """Controls and the picture they lead to; displays itself.
+
+    Parameters
+    ----------
+    controls : sequence of Control
+    picture : callable
+        Values by name -> `View`; a pure function.
+    alt : str
+        What the picture shows, for those who cannot see it.
+    actions : dict of str to callable, optional
+        Buttons: label -> what to do with the panel, returning a line to show.
+    slow : bool
+        Whether a picture takes long: controls then speak when they are let go.
+    """
+
+    def __init__(
+        self,
+        controls: tuple[Control, ...],
+        picture: Callable[..., View],
+        *,
+        alt: str,
+        actions: dict[str, Callable[[Any], str]] | None = None,
+        slow: bool = False,
+    ) -> None:
+        self.controls = {control.name: control for control in controls}
+        self.values: dict[str, Any] = {control.name: control.value for control in controls}
+        self.alt = alt
+        self.actions = dict(actions or {})
+        self.slow = slow
+        self._picture = picture
+        self.view = picture(**self.values)
+
+    def set(self, **values: Any) -> Panel:
+        """Move controls and draw at once.
+
+        Raises
+        ------
+        InputRefused
+            ``UnknownControl``.
+        """
+        for name in values:
+            if name not in self.controls:
+                known = ", ".join(self.controls)
+                raise InputRefused("UnknownControl", f"This panel has no control {name!r}.", f"It has: {known}.")
+        if mode() == "widget":
+            self.front.set(values)
+        else:
+            self.update(values)
+        return self
+
+    def update(self, values: dict[str, Any]) -> View:
+        """Take new values and draw; a setting that cannot be drawn keeps the picture and says why."""
+        self.values = self.values | values
+        try:
+            self.view = self._picture(**self.values)
+        except CranioError as problem:
+            self.view = View(self.view.rgb // 2 + 127, str(problem))
+        return self.view
+
+    @cached_property
+    def front(self) -> Any:
+        """The controls as widgets (`live.Front`)."""
+        from .live import Front
+
+        return Front(self)
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Bundle:
+        data, metadata = bundle(encoded_png(self.view.rgb), self.alt, self.view.line)
+        if mode() == "widget":
+            data |= self.front.box._repr_mimebundle_()
+        return data, metadata

@@ -1,0 +1,173 @@
+"""The whole pipeline under sliders: parameters of a design -> how near it comes to the known truth.
+
+Frame: world mm (LPS).
+"""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...drawing.canvas import BLACK, BLUE, GREY, Canvas
+from ...methods import slicewise
+from ...pipeline import run
+from ...pipeline.run import TruthCheck
+from ...prosthesis import Prosthesis
+from ...vault import opening_search
+from ...volume import Volume
+from .controls import Choice, Slider, Switch, View
+from .panel import Panel
+from .solid import DistanceMap, coloured, distance_map, put_view
+
+if TYPE_CHECKING:
+    from data_synth import Case
+
+FILE = "cranio_nb_parameters.json"
+SLICES = ("axial, as in the paper", "fans from inside the head")
+_WORSE = "#B34E00"  # vermillion, dark enough for letters
+_WIDTH, _HEIGHT, _TOP = 440, 440, 1.5  # px, px, mm at the upper end of the colour scale
+_CAPTION = 30  # px above the map
+_MEASURES = (
+    ("DSC", "", 3, True),
+    ("border DSC", "", 3, True),
+    ("HD95", "mm", 2, False),
+    ("mean surface distance", "mm", 2, False),
+    ("outer side, mean", "mm", 2, False),
+    ("inner side, mean", "mm", 2, False),
+    ("volume / true volume", "", 3, None),
+)
+
+
+class Tuner(Panel):
+    """A panel over the parameters of `methods.slicewise.design`."""
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The options that the controls stand for, as `cranio-nb design --params` and `slicewise.design` take them."""
+        return options_of(**self.values)
+
+    def save(self, path: str | Path = FILE) -> Path:
+        """Write the parameters as JSON."""
+        path = Path(path)
+        path.write_text(json.dumps(self.parameters, indent=2) + "\n", encoding="utf-8")
+        return path
+
+
+def tuner(case: Case) -> Tuner:
+    """Design and score a phantom again with every move.
+
+    Parameters
+    ----------
+    case : Case
+        From `data_synth.phantom_case`; "tiny" answers within about two seconds, at once where it was before.
+    """
+    bone, truth = Volume(case.bone, case.affine), Volume(case.implant, case.affine)
+    openings = opening_search.find_openings(bone)
+    made = lru_cache(maxsize=32)(lambda *values: _measured(bone, truth, openings, options_of(*values)))
+    controls = (
+        Choice("slices", "slices", SLICES, SLICES[1]),
+        Slider("directions", "directions of the fans", 1, 8, 6),
+        Slider("skip", "skip: left out at the cut (mm)", 0, 15, 1.5, 0.5),
+        Slider("reach", "reach: fitted after that (mm)", 4, 30, 10, 0.5),
+        Slider("coupling", "tangents shared over (mm)", 0, 10, 4, 0.5),
+        Switch("own", "set k by hand (else from the end tangents)", False),
+        Slider("pressure", "k: pressure (per index\N{SUPERSCRIPT TWO})", -0.1, 1.0, 0.062, 0.002),
+        Slider("n_snaxels", "snaxels, N + 1", 11, 81, 41, 2),
+        Slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1, 5, 1, 0.1),
+        Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, 5, 1, 0.1),
+        Switch("smooth", "surface without stairs", True),
+    )
+    first = made(*(control.value for control in controls))
+    alt = (
+        "The designed prosthesis coloured by its distance from the true one, and its scores beside those at the start."
+    )
+    actions = {"save the parameters": lambda panel: f"Written: {panel.save()}"}
+    return Tuner(
+        controls,
+        lambda **values: tuner_view(made(*values.values()), first, values),
+        alt=alt,
+        actions=actions,
+        slow=True,
+    )
+
+
+def options_of(
+    slices: str,
+    directions: int,
+    skip: float,
+    reach: float,
+    coupling: float,
+    own: bool,
+    pressure: float,
+    n_snaxels: int,
+    tension: float,
+    rigidity: float,
+    smooth: bool,
+) -> dict[str, Any]:
+    """Options of `slicewise.design` for the values of the controls."""
+    return {
+        "axial": slices == SLICES[0],
+        "directions": directions,
+        "skip": skip,
+        "reach": reach,
+        "coupling": coupling,
+        "pressure": pressure if own else None,
+        "n_snaxels": n_snaxels,
+        "tension": tension,
+        "rigidity": rigidity,
+        "smooth": smooth,
+    }
+
+
+Measured = tuple[tuple[float, ...], DistanceMap]
+
+
+def _measured(bone: Volume, truth: Volume, openings: tuple[Any, ...], options: dict[str, Any]) -> Measured:
+    """Measures of one design in the order of `_MEASURES`, and its map of distances."""
+    made = slicewise.design(bone, openings, **options)
+    check = run.check_truth(made, truth, bone, openings[0])
+    return measures(made, check), distance_map(made, check.prosthesis, 0)
+
+
+def measures(made: Prosthesis, check: TruthCheck) -> tuple[float, ...]:
+    """The numbers of the table, in its order."""
+    score = check.score
+    sides = (float(np.mean(check.distances[side])) for side in ("outer", "inner"))
+    return score.dice, score.border_dice, score.hd95, score.assd, *sides, score.volume_ratio
+
+
+def tuner_view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
+    """Map and table of a design, beside the numbers of the first one."""
+    canvas, seen = Canvas(_WIDTH + 390, _HEIGHT + _CAPTION), Canvas(_WIDTH + 1, _HEIGHT)
+    put_view(seen, coloured(now[1].seen, _TOP), now[1].px)
+    canvas.inlay(seen, 0, _CAPTION)
+    canvas.text(14, 22, f"distance of the outer side: blue 0, yellow {_TOP:g} mm and more", size=12, colour=GREY)
+    left = _WIDTH + 20
+    for x, name in ((left + 240, "at the start"), (left + 350, "now")):
+        canvas.text(x, 50, name, size=13, colour=GREY, anchor="rs")
+    for i, (name, unit, digits, more) in enumerate(_MEASURES):
+        y, before, value = 86 + 40 * i, first[0][i], now[0][i]
+        canvas.line([(left, y + 12), (left + 356, y + 12)], "#DADADA", width=1)
+        canvas.text(left, y, name, size=14)
+        canvas.text(left + 240, y, f"{before:.{digits}f} {unit}".strip(), size=14, colour=GREY, anchor="rs")
+        mark, colour = _verdict(value, before, more, digits)
+        canvas.text(left + 350, y, f"{mark} {value:.{digits}f} {unit}".strip(), size=15, colour=colour, anchor="rs")
+    better, worse = "\N{BLACK UP-POINTING TRIANGLE} better", "\N{BLACK DOWN-POINTING TRIANGLE} worse than at the start"
+    canvas.text(left, 86 + 40 * len(_MEASURES), better, size=12, colour=BLUE)
+    canvas.text(left + 80, 86 + 40 * len(_MEASURES), worse, size=12, colour=_WORSE)
+    dice, _, hd95, *_ = now[0]
+    line = f"DSC {dice:.3f}, HD95 {hd95:.2f} mm, outer side {now[0][4]:.2f} mm and inner side {now[0][5]:.2f} mm off."
+    off = ("directions", "coupling") if values["slices"] == SLICES[0] else ()
+    return View(canvas.array(), line, off=off if values["own"] else (*off, "pressure"))
+
+
+def _verdict(value: float, before: float, more: bool | None, digits: int) -> tuple[str, str]:
+    """Arrow and colour that say whether a value is better than before."""
+    gain = (value - before) * (1 if more else -1) if more is not None else abs(before - 1) - abs(value - 1)
+    if abs(gain) < 0.5 * 10**-digits:
+        return "", BLACK
+    return ("\N{BLACK UP-POINTING TRIANGLE}", BLUE) if gain > 0 else ("\N{BLACK DOWN-POINTING TRIANGLE}", _WORSE)

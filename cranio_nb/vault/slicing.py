@@ -1,0 +1,131 @@
+"""Along which planes an opening is cut: a chart of the vault comes in -> stacks of slices go out.
+
+Frames: slice (row, col) in mm about the eye, a point inside the head; a slice's `frame` takes it to the world (mm,
+LPS). Rays of a slice: angle 0 looks at the opening, against the rows, and grows towards the columns.
+
+The paper cuts axially and its opening is lateral. Near the vertex an axial slice is a cap, not a ring, and meets the
+rim at a flat angle. A fan of planes through a point inside the head cuts every opening as the paper's slices cut
+theirs: each slice is a full ring, and crosses the hole the short way or any other way one likes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from ..volume import Volume
+from .radius_map import RadialChart
+from .ray_grid import extended
+from .rims import RayProfile
+
+_APART = 1.0  # mm between slices on the vault
+_RAY = 0.4  # mm between rays on the vault
+_SIDE = 0.75  # radians of bone looked at on each side of the hole
+
+
+@dataclass(frozen=True, eq=False)
+class Fan:
+    """Planes that share a line through the eye.
+
+    Parameters
+    ----------
+    axes : ndarray, shape (3, 3)
+        Rows, world: the shared line (columns of the slices), the direction the planes turn to, the opening.
+    tilts : ndarray, shape (P,)
+        Angle of each plane from the opening's direction, radians, evenly spaced.
+    angles : ndarray, shape (K,)
+        Angles of the rays within a slice, radians, evenly spaced.
+    """
+
+    axes: NDArray[np.float64]
+    tilts: NDArray[np.float64]
+    angles: NDArray[np.float64]
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """Unit vector of each ray of each slice, shape (P, K, 3), world."""
+        tilt, angle = self.tilts[:, None, None], self.angles[None, :, None]
+        hinge, turn, middle = self.axes
+        return np.cos(angle) * (np.cos(tilt) * middle + np.sin(tilt) * turn) + np.sin(angle) * hinge
+
+    def locate(self, directions: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Fractional (slice, ray) indices of unit vectors (..., 3), shape (2, ...)."""
+        hinge, turn, middle = np.moveaxis(directions @ self.axes.T, -1, 0)
+        tilt, angle = np.arctan2(turn, middle), np.arcsin(np.clip(hinge, -1, 1))
+        steps = self.tilts[1] - self.tilts[0], self.angles[1] - self.angles[0]
+        return np.stack([(tilt - self.tilts[0]) / steps[0], (angle - self.angles[0]) / steps[1]])
+
+    def frames(self, eye: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Origin, row and column vector of each slice, shape (P, 3, 3), world: point = origin + row r + col c."""
+        up = np.cos(self.tilts)[:, None] * self.axes[2] + np.sin(self.tilts)[:, None] * self.axes[1]
+        return np.stack([np.broadcast_to(eye, up.shape), -up, np.broadcast_to(self.axes[0], up.shape)], axis=1)
+
+
+def axial_frames(bone: Volume, planes: range) -> NDArray[np.float64]:
+    """Frames of planes of the scan itself, slice (row, col) in px, shape (P, 3, 3)."""
+    origins = [bone.to_world([plane, 0, 0]) for plane in planes]
+    return np.stack([[origin, bone.affine[:3, 1], bone.affine[:3, 2]] for origin in origins])
+
+
+def fans(chart: RadialChart, n: int) -> list[Fan]:
+    """Fans whose slices cross the hole in `n` directions, evenly turned; the slices of the first cross its short side.
+
+    Parameters
+    ----------
+    chart : RadialChart
+    n : int
+        Number of directions, 1 or more.
+    """
+    hole = chart.directions[chart.hole]
+    radius = float(np.nanmedian(chart.outer))
+    across, along, middle = chart.axes
+    out = []
+    for turn in np.arange(n) * np.pi / n:
+        hinge = np.cos(turn) * across + np.sin(turn) * along
+        axes = np.stack([hinge, np.cross(middle, hinge), middle])
+        h, t, m = (hole @ axes.T).T
+        tilt, angle = np.arctan2(t, m), np.arcsin(h)
+        tilts = np.arange(tilt.min() - 2 * _APART / radius, tilt.max() + 2 * _APART / radius, _APART / radius)
+        angles = np.arange(max(angle.min() - _SIDE, -1.55), min(angle.max() + _SIDE, 1.55), _RAY / radius)
+        out.append(Fan(axes, tilts, angles))
+    return out
+
+
+def profile(chart: RadialChart, fan: Fan) -> RayProfile:
+    """Radii and gap of every slice of a fan, read off the chart; lengths in mm."""
+    at = chart.locate(fan.directions)
+    inside = ((at >= 0) & (at <= len(chart.outer) - 1)).all(axis=0)
+    hole = ndimage.map_coordinates(chart.hole.astype(np.float32), at, order=1) > 0.5
+    known = np.isfinite(chart.outer)
+    seen = inside & (ndimage.map_coordinates(known.astype(np.float32), at, order=1) > 0.99)
+    inner, outer = (
+        np.where(seen, ndimage.map_coordinates(extended(radius), at, order=1, mode="nearest"), np.nan)
+        for radius in (chart.inner, chart.outer)
+    )
+    return RayProfile(np.zeros(2), fan.angles, inner, outer, hole)
+
+
+def picture(
+    volume: Volume, frame: NDArray[np.float64], rows: NDArray[np.float64], cols: NDArray[np.float64]
+) -> NDArray[np.bool_]:
+    """What a mask looks like in a slice.
+
+    Parameters
+    ----------
+    volume : Volume
+        Bool mask.
+    frame : ndarray, shape (3, 3)
+        Origin, row and column vector of the slice, world.
+    rows, cols : ndarray, shape (R,), (C,)
+        Where to look, in the slice's own unit.
+
+    Returns
+    -------
+    ndarray of bool, shape (R, C)
+    """
+    origin, row, col = frame
+    index = volume.to_voxel(origin + rows[:, None, None] * row + cols[None, :, None] * col)
+    return ndimage.map_coordinates(volume.voxels, np.rint(np.moveaxis(index, -1, 0)), order=0, mode="constant")

@@ -1,0 +1,112 @@
+"""Hulls over the hole of a hollow ball, where the flat lid is known in closed form."""
+
+import numpy as np
+import pytest
+
+from cranio_nb.errors import NoOpening
+from cranio_nb.methods import hull
+from cranio_nb.opening import Opening
+from cranio_nb.stages.prosthesis_volume import solid_piece
+from cranio_nb.volume import Volume
+
+INNER, OUTER, HALF = 72.0, 80.0, 22.0  # mm, mm, degrees
+EYE = np.array([-104.0, 33.0, -812.0])
+STEP = 1.5
+
+
+def ball(towards):
+    """A hollow ball about `EYE` with a conical hole, and its opening."""
+    reach = OUTER + 6
+    n = int(2 * reach / STEP)
+    affine = np.eye(4)
+    affine[:3, :3], affine[:3, 3] = np.eye(3)[:, ::-1] * STEP, EYE - reach
+    away = np.moveaxis(np.indices((n, n, n)), 0, -1) @ affine[:3, :3].T - reach
+    radius = np.linalg.norm(away, axis=-1)
+    cosine = away @ (towards / np.linalg.norm(towards)) / np.maximum(radius, 1e-9)
+    hole = cosine > np.cos(np.radians(HALF))
+    bone = (radius >= INNER) & (radius <= OUTER) & ~hole
+    sheet = (radius >= OUTER - 4) & (radius <= OUTER) & hole
+    return Volume(bone, affine), Opening(Volume(sheet, affine), EYE)
+
+
+def depths(made, towards):
+    """Heights of the patch's voxels over the eye along the hole's axis, mm."""
+    points = made.patch.to_world(np.argwhere(made.patch.voxels)) - EYE
+    return points @ (towards / np.linalg.norm(towards))
+
+
+@pytest.mark.parametrize("axial", [False, True])
+def test_a_round_hole_gets_a_flat_lid_from_rim_to_rim(axial):
+    towards = np.array([0.9, 0.35, 0.0])
+    bone, opening = ball(towards)
+    made = hull.design(bone, (opening,), axial=axial)
+    height = depths(made, towards)
+    lid, floor = OUTER * np.cos(np.radians(HALF)), INNER * np.cos(np.radians(HALF))
+    assert np.quantile(height, 0.99) < lid + 1.5 * STEP and np.quantile(height, 0.01) > floor - 1.5 * STEP
+    assert np.quantile(height, 0.95) == pytest.approx(lid, abs=2.0)
+    assert height.max() < OUTER - 2  # the ball's own cap would reach up to OUTER
+
+
+def test_the_hull_in_space_closes_the_top_where_slices_hold_no_ring():
+    towards = np.array([0.0, 0.1, 1.0])
+    bone, opening = ball(towards)
+    assert hull.design(bone, (opening,)).patch.voxels.any()
+    try:
+        sliced = hull.design(bone, (opening,), axial=True)
+    except NoOpening as nothing:
+        assert nothing.code == "NothingBridged"
+    else:
+        assert sliced.patch.voxels.sum() < 0.5 * hull.design(bone, (opening,)).patch.voxels.sum()
+
+
+def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, openings):
+    """Every point of a slice's hull is a point of the hull in space."""
+    (part,) = hull.design(skull("round"), openings("round")).working
+    sliced = hull.design(skull("round"), openings("round"), axial=True).patch
+    away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.eye
+    v, u = np.rint(part.vault.locate(away)).astype(int)
+    top = part.outer[v, u]
+    above = np.linalg.norm(away, axis=1) - top
+    assert np.quantile(above[np.isfinite(top)], 0.99) < 0.6 * sliced.spacing.max()
+
+
+def test_every_slice_says_how_it_was_filled(skull, openings):
+    record = hull.design(skull("unilateral"), openings("unilateral"), axial=True).record["slices"]
+    first, end = openings("unilateral")[0].planes
+    assert [entry["plane"] for entry in record] == list(range(first - 2, end + 2))
+    assert {"open ring"} <= {entry["reason"] for entry in record if entry["status"] == "hull"}
+    assert "slices" not in hull.design(skull("unilateral"), openings("unilateral")).record
+
+
+def test_a_hull_is_no_deeper_or_higher_than_its_two_surfaces(skull, openings):
+    (part,) = hull.design(skull("round"), openings("round")).working
+    inside = part.vault.hole
+    assert np.isfinite(part.outer[inside]).mean() > 0.98 and np.isnan(part.outer[~inside]).all()
+    assert (part.outer - part.inner)[np.isfinite(part.outer)].min() > 2.0
+
+
+class TestSolidPiece:
+    GRID = np.eye(4) * [0.5, 0.5, 0.5, 1]
+
+    def test_drops_films_pores_and_what_lies_elsewhere(self):
+        patch, opening, bone = np.zeros((3, 30, 30, 30), bool)
+        patch[5:15, 5:15, 5:15] = True
+        patch[10, 10, 10] = False  # a pore
+        patch[15, 5:15, 5:25] = True  # a film, half a mm thick, beside it
+        patch[20:28, 20:28, 20:28] = True  # elsewhere
+        opening[8:12, 8:12, 8:12] = True
+        made = solid_piece(patch, Volume(opening, self.GRID), Volume(bone, self.GRID))
+        wanted = np.zeros_like(patch)
+        wanted[5:15, 5:15, 5:15] = True
+        np.testing.assert_array_equal(made & wanted, wanted)
+        assert not made[16:].any() and not made[15, :, 16:].any()
+
+    def test_keeps_off_bone_and_away_from_holes_it_does_not_reach(self):
+        patch, opening, bone = np.zeros((3, 20, 20, 20), bool)
+        patch[5:15, 5:15, 5:15] = True
+        bone[10, 10, 10] = True
+        patch &= ~bone
+        opening[7:9, 7:9, 7:9] = True
+        assert not (solid_piece(patch, Volume(opening, self.GRID), Volume(bone, self.GRID)) & bone).any()
+        empty = Volume(np.zeros_like(bone), self.GRID)
+        assert not solid_piece(patch, empty, Volume(bone, self.GRID)).any()

@@ -1,0 +1,199 @@
+"""Openings found without a hint, against the phantoms' known cutters."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from cranio_nb.errors import InputRefused, NoOpening
+from cranio_nb.vault.opening_search import find_openings, head_centre, look
+from cranio_nb.volume import Volume
+from data_synth import DEFECTS, scan
+
+OPEN = [name for name in DEFECTS if name != "partial"]
+
+
+def holes(case):
+    """Free part of every cutter: the planes (first, end) of the missing bone, its centre (mm), its mask."""
+    labels, n = ndimage.label(case.implant, np.ones((3, 3, 3)))
+    for i in range(1, n + 1):
+        index = np.argwhere(labels == i)
+        centre = index.mean(axis=0) @ case.affine[:3, :3].T + case.affine[:3, 3]
+        yield (index[:, 0].min(), index[:, 0].max() + 1), centre, labels == i
+
+
+def matched(openings, case):
+    """Pairs of a true hole and the opening nearest to it."""
+    for planes, centre, mask in holes(case):
+        yield planes, centre, mask, min(openings, key=lambda found: np.linalg.norm(found.centre - centre))
+
+
+@pytest.mark.parametrize("defect", OPEN)
+def test_every_opening_of_a_named_defect_is_found_where_it_is(defect, phantom, openings):
+    case, found = phantom(defect), openings(defect)
+    assert len(found) == len(DEFECTS[defect])
+    for planes, centre, mask, opening in matched(found, case):
+        # the sheet and a bevelled piece of a sphere do not weigh a hole's places alike
+        assert np.linalg.norm(opening.centre - centre) < 5.0
+        np.testing.assert_allclose(opening.planes, planes, atol=1)
+        covered = (opening.sheet.voxels & mask).sum()
+        assert covered > 0.6 * opening.sheet.voxels.sum()
+        assert not (opening.sheet.voxels & case.bone).any()
+        outwards = centre - opening.head_centre
+        assert opening.direction @ outwards / np.linalg.norm(outwards) > np.cos(np.radians(2))
+
+
+def test_openings_come_largest_first_and_share_an_eye(openings):
+    found = openings("multiple")
+    sizes = [opening.sheet.voxels.sum() for opening in found]
+    assert sizes == sorted(sizes, reverse=True)
+    for opening in found[1:]:
+        np.testing.assert_array_equal(opening.head_centre, found[0].head_centre)
+        assert not (opening.sheet.voxels & found[0].sheet.voxels).any()
+
+
+def test_two_openings_are_the_two_found_alone(phantom, openings):
+    """Far-apart defects do not see each other: their union is that of the single runs."""
+    case, both = phantom("bilateral"), openings("bilateral")
+    for _, _, mask, opening in matched(both, case):
+        alone = Volume(case.bone | (case.implant & ~mask), case.affine)
+        (single,) = find_openings(alone)
+        np.testing.assert_allclose(single.centre, opening.centre, atol=1.5)
+        a, b = single.sheet.voxels, opening.sheet.voxels
+        assert 2 * (a & b).sum() / (a.sum() + b.sum()) > 0.9
+
+
+@pytest.mark.parametrize("defect", ["unilateral", "vertex", "partial"])
+def test_a_complete_or_only_dented_skull_has_no_opening(defect, phantom):
+    case = phantom(defect)
+    for voxels in (case.complete, case.bone) if defect == "partial" else (case.complete,):
+        with pytest.raises(NoOpening) as refused:
+            find_openings(Volume(voxels, case.affine))
+        assert refused.value.code == "NoOpening"
+
+
+@pytest.mark.parametrize(
+    ("defect", "axis", "keep"),
+    [
+        ("unilateral", 0, "low"),
+        ("unilateral", 0, "high"),
+        ("unilateral", 1, "low"),
+        ("unilateral", 2, "low"),
+        ("vertex", 0, "low"),
+    ],
+)
+def test_an_opening_that_leaves_the_image_is_refused(defect, axis, keep, phantom, skull):
+    """The image ends in the middle of the hole, so that half of its rim is missing."""
+    hit = np.flatnonzero(phantom(defect).implant.any(axis=tuple({0, 1, 2} - {axis})))
+    middle = int(hit[0] + hit[-1]) // 2
+    box = [slice(None)] * 3
+    box[axis] = slice(middle) if keep == "low" else slice(middle, None)
+    with pytest.raises(InputRefused, match="edge of the image") as refused:
+        find_openings(skull(defect).crop(tuple(box)))
+    assert refused.value.code == "OpeningLeavesImage"
+
+
+def test_a_mask_without_bone_is_no_vault():
+    with pytest.raises(InputRefused) as refused:
+        find_openings(Volume(np.zeros((40, 64, 64), bool), np.eye(4)))
+    assert refused.value.code == "NoVault"
+
+
+def test_a_slab_of_bone_is_no_vault():
+    voxels = np.zeros((40, 64, 64), bool)
+    voxels[10:30, 20:40, 20:24] = True
+    with pytest.raises(InputRefused, match="60 mm") as refused:
+        find_openings(Volume(voxels, np.eye(4)))
+    assert refused.value.code == "NoVault"
+
+
+def rotated(affine, degrees, shift):
+    x, y, z = np.radians(degrees)
+    cx, sx, cy, sy, cz, sz = np.cos(x), np.sin(x), np.cos(y), np.sin(y), np.cos(z), np.sin(z)
+    turn = (
+        np.array([[1, 0, 0], [0, cx, -sx], [0, sx, cx]])
+        @ np.array([[cy, 0, sy], [0, 1, 0], [-sy, 0, cy]])
+        @ np.array([[cz, -sz, 0], [sz, cz, 0], [0, 0, 1]])
+    )
+    moved = np.eye(4)
+    moved[:3, :3], moved[:3, 3] = turn, shift
+    return moved @ affine
+
+
+@pytest.mark.parametrize("degrees", [(0, 0, 0), (38, 0, 0), (0, 25, 15), (-20, 12, -30)])
+def test_where_the_header_puts_the_head_moves_nothing_in_the_voxels(degrees, skull, openings):
+    bone, (here,) = skull("unilateral"), openings("unilateral")
+    there_affine = rotated(bone.affine, degrees, (311.0, -47.5, 905.0))
+    (there,) = find_openings(Volume(bone.voxels, there_affine))
+    np.testing.assert_array_equal(there.sheet.voxels, here.sheet.voxels)
+    move = there_affine @ np.linalg.inv(bone.affine)
+    np.testing.assert_allclose(there.centre, move[:3, :3] @ here.centre + move[:3, 3], atol=1e-6)
+    np.testing.assert_allclose(there.direction, move[:3, :3] @ here.direction, atol=1e-9)
+
+
+@pytest.mark.parametrize("defect", ["unilateral", "frontal", "vertex"])
+def test_flipping_left_and_right_mirrors_the_opening(defect, skull, openings):
+    bone = skull(defect)
+    (one,), (other,) = openings(defect), find_openings(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
+    a, b = one.sheet.voxels, other.sheet.voxels[:, :, ::-1]
+    thick = np.ones((3, 3, 3), bool)
+    assert not (a & ~ndimage.binary_dilation(b, thick)).any()
+    assert not (b & ~ndimage.binary_dilation(a, thick)).any()
+    assert one.planes == other.planes
+
+
+def test_air_around_the_head_changes_nothing(skull, openings):
+    bone = skull("round")
+    padded_affine = bone.affine.copy()
+    padded_affine[:3, 3] = bone.to_world([-3, -6, -9])
+    padded = Volume(np.pad(bone.voxels, ((3, 3), (6, 6), (9, 9))), padded_affine)
+    (here,), (there,) = openings("round"), find_openings(padded)
+    np.testing.assert_allclose(there.head_centre, here.head_centre, atol=2.0)
+    np.testing.assert_allclose(there.centre, here.centre, atol=1.0)
+
+
+def test_a_wider_hole_contains_the_narrower(phantom):
+    """Growing the defect never shrinks the opening."""
+    case = phantom("round", 2)
+    planes_before, sheet_before = None, 0
+    for diameter in (25.0, 40.0, 55.0):
+        cutter = case.head.cutters[0]
+        sine = diameter / 2 / float(case.head.outer_radius(cutter.axes[2]))
+        head = replace(case.head, cutters=(replace(cutter, half_angles=np.full(2, 2 * np.sin(np.arcsin(sine) / 2))),))
+        (opening,) = find_openings(Volume(scan(head, case.affine, case.bone.shape)[1], case.affine))
+        sheet = opening.sheet.voxels.sum()
+        if planes_before:
+            assert opening.planes[0] <= planes_before[0] and opening.planes[1] >= planes_before[1]
+        assert sheet > sheet_before
+        planes_before, sheet_before = opening.planes, sheet
+
+
+def test_openings_narrower_than_asked_for_are_not_openings(skull):
+    bone = skull("burr_hole")  # 12 to 15 mm
+    assert len(find_openings(bone, min_diameter=6.0)) == 1
+    with pytest.raises(NoOpening):
+        find_openings(bone, min_diameter=25.0)
+
+
+def test_the_eye_lies_on_the_heads_axis_85_mm_under_the_vertex(phantom, skull):
+    case, eye = phantom("unilateral"), head_centre(skull("unilateral"))
+    top = case.head.centre[2] + float(case.head.outer_radius([0.0, 0.0, 1.0]))
+    assert eye[2] == pytest.approx(top - 85, abs=4.0)  # planes are 3 mm apart
+    np.testing.assert_allclose(eye[:2], case.head.centre[:2], atol=5.0)
+
+
+def test_what_the_eye_sees_is_the_outer_skull(phantom, skull):
+    case, sky = phantom("unilateral"), look(skull("unilateral"))
+    np.testing.assert_allclose(np.linalg.norm(sky.directions, axis=-1), 1, atol=1e-12)
+    seen = np.isfinite(sky.radius) & (sky.polar < 60)
+    p = sky.eye + sky.directions[seen] * sky.radius[seen][:, None] - case.head.centre
+    away = np.linalg.norm(p, axis=1)
+    off = away - case.head.outer_radius(p / away[:, None])
+    assert abs(np.median(off)) < 1.5 and np.percentile(np.abs(off), 95) < 3.0  # a voxel
+
+
+def test_the_bone_is_not_modified(phantom, skull):
+    before = phantom("unilateral").bone.copy()
+    find_openings(skull("unilateral"))  # its arrays are read-only
+    np.testing.assert_array_equal(phantom("unilateral").bone, before)
