@@ -122,7 +122,7 @@ class OuterSurface:
         return np.stack([y * scale, x * scale]) + (len(self.radius) - 1) / 2
 
 
-def find(bone: Volume, centre: Array) -> SymmetryPlane:
+def find_symmetry_plane(bone: Volume, centre: Array) -> SymmetryPlane:
     """Find the symmetry plane of a skull, whole or with holes.
 
     Parameters
@@ -138,7 +138,7 @@ def find(bone: Volume, centre: Array) -> SymmetryPlane:
     InputRefused
         ``NoSymmetry`` when too little of the vault has a counterpart on the other side.
     """
-    surface = look(bone, np.asarray(centre, float))
+    surface = measure_outer_surface(bone, np.asarray(centre, float))
     seen = np.isfinite(surface.normals).all(axis=-1)
     points = surface.points[seen] - surface.eye
     normal, shift = _start(surface, points[::3])
@@ -181,7 +181,7 @@ def _described(
     )
 
 
-def look(bone: Volume, eye: Array) -> OuterSurface:
+def measure_outer_surface(bone: Volume, eye: Array) -> OuterSurface:
     """See the outer surface from the eye (world mm), smoothed over neighbouring rays, without the edges of holes."""
     axes = _axes(bone)
     half = int(np.ceil(_SKY / _STEP)) + _RIM + 2

@@ -8,7 +8,7 @@ import pytest
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.vault import symmetry
-from cranio_nb.vault.opening_search import head_centre
+from cranio_nb.vault.orientation import head_centre
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
 from data_synth.head import SHAPE_TERMS, THICKNESS_TERMS
@@ -45,7 +45,7 @@ def scanned(defect, rotation=None):
 
 
 def found(bone):
-    return symmetry.find(bone, head_centre(bone))
+    return symmetry.find_symmetry_plane(bone, head_centre(bone))
 
 
 def check_is_mid_plane(plane, head, mm=0.2, degrees=0.2):
@@ -134,7 +134,7 @@ def test_half_a_skull_has_no_plane():
     half = bone.voxels.copy()
     half[:, :, : int(bone.to_voxel(head.centre)[2])] = False
     with pytest.raises(InputRefused) as refused:
-        symmetry.find(bone.with_voxels(half), head.centre)
+        symmetry.find_symmetry_plane(bone.with_voxels(half), head.centre)
     assert refused.value.code == "NoSymmetry"
 
 
@@ -145,6 +145,9 @@ def test_a_real_skull_keeps_its_plane_when_it_is_cut(real_data):
     whole = read_ct(real_data / "skullfix/complete/025.nrrd", mask=True)[0]
     case = cut_case(whole.voxels, whole.affine, "large", 25, is_mask=True)
     eye = head_centre(whole)
-    before, after = symmetry.find(whole, eye), symmetry.find(Volume(case.bone, case.affine), eye)
+    before, after = (
+        symmetry.find_symmetry_plane(whole, eye),
+        symmetry.find_symmetry_plane(Volume(case.bone, case.affine), eye),
+    )
     assert abs(after.distance(before.point)) < 0.5
     assert np.linalg.norm(np.cross(before.normal, after.normal)) < np.radians(0.5)
