@@ -31,7 +31,9 @@ debug = click.option(
 allow = click.option(
     "--allow", multiple=True, type=click.Choice(ALLOWANCES), help="Relax one check of the reader; may be repeated."
 )
-mask = click.option("--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it.")
+mask = click.option(
+    "--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it."
+)
 threshold = click.option("--threshold", type=float, metavar="HU", help="Lowest HU of bone.  [default: 400]")
 truth = click.option(
     "--truth", type=PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against."

@@ -88,12 +88,12 @@ def save(made: Prosthesis, folder: str | PathLike[str], report: LoadReport | Non
     Examples
     --------
     >>> import numpy as np
-    >>> from cranio_nb.stages.surface_reconstruction import extract
+    >>> from cranio_nb.stages.surface_reconstruction import extract_surface
     >>> from cranio_nb.volume import Volume
     >>> cube = np.zeros((8, 8, 8), bool)
     >>> cube[2:6, 2:6, 2:6] = True
     >>> patch = Volume(cube, np.eye(4))
-    >>> made = Prosthesis(extract(patch), np.zeros(0, np.uint8), patch, "hull")
+    >>> made = Prosthesis(extract_surface(patch), np.zeros(0, np.uint8), patch, "hull")
     >>> [path.name for path in save(made, "out")]
     ['prosthesis.stl', 'patch.nii.gz', 'design.json']
     """

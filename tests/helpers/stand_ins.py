@@ -10,13 +10,14 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import InputRefused, NoOpening
+from cranio_nb.geometry.face_sides import label_faces
 from cranio_nb.methods import catalogue
 from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.pipeline import compare, trial
 from cranio_nb.pipeline.run import prepare
 from cranio_nb.pipeline.trial import attempt, contenders
 from cranio_nb.prosthesis import Prosthesis
-from cranio_nb.stages.surface_reconstruction import extract, face_sides
+from cranio_nb.stages.surface_reconstruction import extract_surface
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -27,8 +28,8 @@ def from_truth(grow):
     def design(bone, openings=None, *, progress=None):
         case = phantom_case("tiny", "round", 0)
         patch = np.roll(case.implant, grow, axis=0) & ~bone.voxels
-        mesh = extract(bone.with_voxels(patch))
-        sides = face_sides(mesh, bone, openings[0].head_centre)
+        mesh = extract_surface(bone.with_voxels(patch))
+        sides = label_faces(mesh, bone, openings[0].head_centre)
         return Prosthesis(mesh, sides, bone.with_voxels(patch), "stand-in", {}, {"version": "0", "seconds": 1.0})
 
     return design

@@ -9,7 +9,7 @@ from cranio_nb.methods import catalogue
 from cranio_nb.pipeline import compare, trial
 from cranio_nb.pipeline.trial import Contender, attempt, attempt_apart, contenders
 from cranio_nb.prosthesis import Prosthesis
-from cranio_nb.stages.surface_reconstruction import extract
+from cranio_nb.stages.surface_reconstruction import extract_surface
 
 
 @pytest.fixture
@@ -91,7 +91,9 @@ def test_a_patch_that_runs_out_of_the_image_is_a_failure_and_no_refusal(compared
     def leaking(bone, openings=None, *, progress=None):
         patch = np.zeros(bone.shape, bool)
         patch[-1] = True
-        return Prosthesis(extract(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking")
+        return Prosthesis(
+            extract_surface(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking"
+        )
 
     monkeypatch.setitem(STAND_INS, "perfect", leaking)
     with only_stand_ins():

@@ -30,11 +30,12 @@ from scipy.spatial import cKDTree
 from skimage.measure import find_contours
 
 from ...errors import InputRefused, NoOpening
+from ...geometry import voxel_pieces
 from ...mesh import Mesh
 from ...opening import Opening
 from ...prosthesis import Prosthesis
-from ...stages import prosthesis_volume
-from ...vault import opening_search, radius_map
+from ...vault import opening_search, radius_measurement
+from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
 from ..assembly import assemble
 from . import membrane, mesh_to_voxels, tetrahedra
@@ -94,7 +95,7 @@ def design(
     n_guides : int
         Guiding points around each hole, 3 at least.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -112,7 +113,7 @@ def design(
     """
     began = time.perf_counter()
     openings = opening_search.find_openings(bone) if openings is None else openings
-    guides = [find_guides(radius_map.look(bone, one), n_guides) for one in openings]
+    guides = [find_guides(radius_measurement.measure_around(bone, one), n_guides) for one in openings]
     made = design_from_guides(bone, openings, guides, smooth=smooth, progress=progress)
     options = {"n_guides": n_guides, "smooth": smooth}
     return replace(made, parameters=options, record=made.record | {"seconds": time.perf_counter() - began})
@@ -157,7 +158,7 @@ def design_from_guides(
     return assemble(patch, bone, openings, "you", options, began=began, working=working, record={"fills": fills})
 
 
-def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.float64]:
+def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     """Points on the outer surface at even steps around a hole, shape (n_guides, 3), world mm."""
     soft = ndimage.gaussian_filter(vault.hole.astype(float), 1.5)
     outline = max(find_contours(np.pad(soft, 1), 0.5), key=len)[:-1] - 1
@@ -167,7 +168,7 @@ def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.floa
     v, u = (np.rint(np.interp(at, along, c)).astype(int) for c in closed.T)
     unknown = vault.hole | ~np.isfinite(vault.outer)
     v, u = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)[:, v, u]
-    return vault.eye + vault.directions[v, u] * vault.outer[v, u, None]
+    return vault.grid.centre + vault.grid.directions[v, u] * vault.outer[v, u, None]
 
 
 def fill_between(bone: Volume, one: Opening, guides: NDArray[np.float64]) -> Filling:
@@ -219,7 +220,7 @@ def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop,
 
 def _piece(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
     """Voxels inside the solid and off the bone, in one piece, without the slivers where a fill grazes the bone."""
-    return prosthesis_volume.main_piece(
+    return voxel_pieces.keep_main_piece(
         ndimage.binary_opening(mesh_to_voxels.inside(closed, bone) & ~bone.voxels), opening
     )
 
