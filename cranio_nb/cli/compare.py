@@ -77,7 +77,7 @@ def compare(
 
 def _print(found: Comparison, out: Path | None) -> None:
     """Print the tables, the sentences of those that refused, and where the page is."""
-    from ..output.comparison_folder import tables
+    from ..output.comparison_tables import tables
     from ..pipeline.compare import MEASURES
     from .console import print_table
 
