@@ -19,8 +19,9 @@ from ...methods.you import method as you
 from ...opening import Opening
 from ...prosthesis import OUTER, Prosthesis
 from ...vault import radius_measurement, symmetry
+from ...vault.outer_surface import OuterSurface, measure_outer_surface
 from ...vault.ray_grid import RadiusMap
-from ...vault.symmetry import OuterSurface, SymmetryPlane
+from ...vault.symmetry import SymmetryPlane
 from ...volume import Volume
 from .bone import dress
 from .controls import Slider, View
@@ -137,7 +138,7 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     """
     found, surface = (
         symmetry.find_symmetry_plane(bone, opening.head_centre),
-        symmetry.measure_outer_surface(bone, opening.head_centre),
+        measure_outer_surface(bone, opening.head_centre),
     )
     plane = sum(opening.planes) // 2
     controls = (
@@ -153,7 +154,7 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
 
 def moved(plane: SymmetryPlane, surface: OuterSurface, turn: float, lean: float, shift: float) -> SymmetryPlane:
     """A plane turned and leaning by degrees about the point nearest to the eye, then shifted along its normal by mm."""
-    _, back, up = surface.axes
+    _, back, up = surface.grid.axes
     normal = plane.normal + np.tan(np.radians(turn)) * back + np.tan(np.radians(lean)) * up
     normal = normal / np.linalg.norm(normal)
     return replace(plane, point=plane.point + shift * normal, normal=normal)
@@ -165,7 +166,7 @@ def _mirror_view(
     """Bone and mirror image in a slice, and the residual over the vault."""
     canvas = Canvas(2 * _SIDE, _SIDE)
     canvas.inlay(_mirrored_slice(bone, mirror, plane), 0, 0)
-    residual = np.abs(symmetry.residuals(surface, mirror)).astype(np.float32)
+    residual = np.abs(symmetry.mirror_residuals(surface, mirror)).astype(np.float32)
     side = _SIDE - 90
     rows = np.linspace(0, len(residual) - 1, side).round().astype(int)
     left, top = _SIDE + 45, 34

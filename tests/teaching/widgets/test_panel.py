@@ -22,6 +22,7 @@ from cranio_nb.stages import deformable_model, feature_extraction, segmentation
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets import inflation, tuning
 from cranio_nb.vault import radius_measurement, symmetry
+from cranio_nb.vault.outer_surface import measure_outer_surface
 from cranio_nb.volume import Volume
 
 
@@ -325,7 +326,7 @@ def test_the_found_plane_has_the_least_residual(static, skull, openings):
 
 def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, openings):
     centre = openings()[0].head_centre
-    found, surface = symmetry.find_symmetry_plane(skull(), centre), symmetry.measure_outer_surface(skull(), centre)
+    found, surface = symmetry.find_symmetry_plane(skull(), centre), measure_outer_surface(skull(), centre)
     other = widgets.rivals.moved(found, surface, turn=0.0, lean=0.0, shift=1.0)
     np.testing.assert_allclose(other.mirror(centre) - found.mirror(centre), 2 * found.normal, atol=1e-9)
 
