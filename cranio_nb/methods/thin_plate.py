@@ -40,11 +40,11 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from ..errors import InputRefused, NoOpening
+from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prior import file as prior_file
 from ..prior.shape_prior import Prior, expect
 from ..prosthesis import Prosthesis
-from ..stages import prosthesis_volume
 from ..vault import opening_search, radius_measurement, radius_voxels, symmetry
 from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane
@@ -114,7 +114,7 @@ def design(
     prior : str
         File made by `cranio-nb prior learn`: the plate is then held to what intact skulls let expect. Empty for none.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -304,7 +304,7 @@ def _piece(plate: Plate, one: Opening, bone: Volume) -> NDArray[np.bool_]:
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
     outer, inner = radius_voxels.thickened(plate.chart, outer=plate.outer, inner=plate.inner)
-    return prosthesis_volume.main_piece(
+    return voxel_pieces.keep_main_piece(
         radius_voxels.voxels_between(plate.chart, bone, outer=outer, inner=inner), one.sheet.voxels
     )
 

@@ -130,7 +130,7 @@ def load(
     return LessonCase(Volume(case.hu, case.affine), Volume(case.implant, case.affine), case)
 
 
-def bridged_plane(bone: Volume, opening: Opening, *, skip: float, reach: float) -> int:
+def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: float) -> int:
     """The plane nearest to the middle of an opening in which both ends of the gap can be seen.
 
     Parameters
@@ -138,8 +138,8 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip: float, reach: float) 
     bone : Volume
         Bool mask.
     opening : Opening
-    skip, reach : float
-        As for `features.gap_ends`, px.
+    skip_px, reach_px : float
+        As for `feature_extraction.find_gap_ends`.
 
     Raises
     ------
@@ -149,8 +149,8 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip: float, reach: float) 
     first, end = opening.planes
     for plane in sorted(range(first, end), key=lambda p: abs(p - (first + end) // 2)):
         with suppress(feature_extraction.SliceProblem):
-            seen = feature_extraction.slice_features(bone.voxels[plane])
-            feature_extraction.gap_ends(seen, opening.sheet.voxels[plane], skip=skip, reach=reach)
+            seen = feature_extraction.extract_features(bone.voxels[plane])
+            feature_extraction.find_gap_ends(seen, opening.sheet.voxels[plane], skip_px=skip_px, reach_px=reach_px)
             return plane
     raise InputRefused(
         "NoAxialGap",

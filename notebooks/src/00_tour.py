@@ -107,12 +107,12 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 
 # %% tags=["nbval-check-output"]
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10
-follow = {"skip": 3, "reach": 10}
+follow = {"skip_px": 3, "reach_px": 10}
 plane = classroom.bridged_plane(bone, openings[0], **follow)  # a slice with both ends
-seen = feature_extraction.slice_features(
+seen = feature_extraction.extract_features(
     bone.voxels[plane]
 )  # the bone's boundary and middle line
-outer, inner = feature_extraction.gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
+outer, inner = feature_extraction.find_gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
 # any point in the head: the balloon must know which way is out
 inside = bone.to_voxel(openings[0].head_centre)[1:]
 player = widgets.balloon(outer, inside, background=bone.voxels[plane], px=case.px)
@@ -221,9 +221,9 @@ check.exercise("0.2", dice)
 # | paper | code | unit |
 # |---|---|---|
 # | CT number | `ct.voxels` | HU |
-# | bone | `segment.segment` | mask |
-# | end points, tangents | `features.gap_ends` -> `GapEnds` | px |
-# | balloon | `balloon.inflate` | px |
+# | bone | `segmentation.segment` | mask |
+# | end points, tangents | `feature_extraction.find_gap_ends` -> `GapEnds` | px |
+# | balloon | `deformable_model.inflate` | px |
 # | prosthesis volume | `Prosthesis.patch` | mask |
 # | digital model | `Prosthesis.mesh` | mm |
 #

@@ -42,7 +42,7 @@ from data_synth import phantom_case
 # |---|---|---|---|
 # | `threshold` | lowest HU of bone | HU | 400 |
 # | `upper` | highest HU of bone | HU | 1000 (we set none) |
-# | `max_hole` | holes up to this area are filled | mm2 in `segment.segment`, px in `segment.fill_holes` | not given |
+# | `max_hole` | holes up to this area are filled | mm2 in `segmentation.segment`, px in `segmentation.fill_holes` | not given |
 # | `min_part` | loose parts under this share of the skull go | share, e.g. 0.02 | not given |
 #
 # *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
@@ -122,8 +122,8 @@ if case.phantom is not None:
 plane = max(
     opening_search.find_openings(masks[2])[0].planes[0] - 4, 0
 )  # below the hole the ring is closed
-raw = segmentation.threshold_hu(ct.voxels, 700)
-filled = segmentation.fill_holes(raw, max_hole=60 / px**2)  # 60 mm2, in pixels
+raw = segmentation.apply_threshold(ct.voxels, 700)
+filled = segmentation.fill_holes(raw, max_hole_px=60 / px**2)  # 60 mm2, in pixels
 added = filled[plane] & ~raw[plane]
 front = np.argwhere(raw[plane])[:1]  # the first bone pixel from the top
 
@@ -169,7 +169,7 @@ print(f"{ndimage.label(tiny, np.ones((3, 3)))[1]} parts if corners connect as we
 # %% tags=["nbval-check-output"]
 lying = phantom_case("class", couch=True)
 level = np.flatnonzero(lying.implant.any(axis=(1, 2)))[0] - 4
-bright = segmentation.threshold_hu(lying.hu, 400)
+bright = segmentation.apply_threshold(lying.hu, 400)
 kept = segmentation.drop_artefacts(bright)
 fig, (ax,) = classroom.axes(height=4.2, width=5.0)
 classroom.show_mask(ax, bright[level], px=0.9, colour="#D55E00")
@@ -235,9 +235,9 @@ classroom.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")
 # | paper | code | unit |
 # |---|---|---|
 # | CT number range [400, 1000] | `threshold`, `upper` | HU |
-# | hole filling | `segment.fill_holes` | px |
-# | search process for artifacts | `segment.drop_artefacts` | |
-# | binary volume | `segment.segment` -> `Volume` of bool | |
+# | hole filling | `segmentation.fill_holes` | px |
+# | search process for artifacts | `segmentation.drop_artefacts` | |
+# | binary volume | `segmentation.segment` -> `Volume` of bool | |
 #
 # **Further reading.** Otsu, *A threshold selection method from gray-level histograms* (1979). Gonzalez and Woods,
 # *Digital Image Processing*, the chapter on morphology.

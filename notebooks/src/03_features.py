@@ -51,7 +51,7 @@ from cranio_nb.vault import opening_search
 case = classroom.load("class")
 bone = segmentation.segment(case.ct)
 opening = opening_search.find_openings(bone)[0]
-plane = classroom.bridged_plane(bone, opening, skip=10, reach=10)
+plane = classroom.bridged_plane(bone, opening, skip_px=10, reach_px=10)
 mask, px = bone.voxels[plane], case.px
 
 # %% [markdown]
@@ -65,7 +65,7 @@ mask, px = bone.voxels[plane], case.px
 # outer or the inner one?
 
 # %% tags=["nbval-check-output"]
-seen = feature_extraction.slice_features(mask)
+seen = feature_extraction.extract_features(mask)
 fig, (left, right) = classroom.axes(2, height=4.4)
 classroom.show_mask(left, mask, px=px, title="bone, spine, hull")
 spine = seen.skeleton[0]
@@ -106,7 +106,7 @@ row, col = np.mgrid[-30:30, -30:30]
 bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) <= 5)
 
 # %% tags=["nbval-check-output"]
-raw, kept = np.argwhere(skeletonize(bar)), feature_extraction.slice_features(bar).skeleton[0]
+raw, kept = np.argwhere(skeletonize(bar)), feature_extraction.extract_features(bar).skeleton[0]
 fig, (ax,) = classroom.axes(height=3.6, width=6.0)
 classroom.show_mask(ax, bar, px=px, title="one end of a bar, cut squarely")
 classroom.show_points(ax, raw, px=px, colour="#D55E00", marker="s", label="raw skeleton")
@@ -165,10 +165,10 @@ inside = bone.to_voxel(opening.head_centre)[1:]
 def measured(plane, skip, reach):
     """Length of the gap (px) and its end angles (degrees), as found in a slice."""
     seen, hole = (
-        feature_extraction.slice_features(bone.voxels[plane]),
+        feature_extraction.extract_features(bone.voxels[plane]),
         opening.sheet.voxels[plane],
     )
-    outer, _ = feature_extraction.gap_ends(seen, hole, skip=skip, reach=reach)
+    outer, _ = feature_extraction.find_gap_ends(seen, hole, skip_px=skip, reach_px=reach)
     frame = ChordFrame.of(outer, inside)
     return frame.length, np.degrees(frame.end_angles(outer))
 
@@ -233,8 +233,8 @@ for skip, reach in settings:
 # missing, or nothing. A closed ring has no ends, and the package says so. (Lesson 05 has the paper's answer for these.)
 
 # %% tags=["raises-exception"]
-closed = feature_extraction.slice_features(bone.voxels[opening.planes[0] - 4])
-feature_extraction.gap_ends(closed)
+closed = feature_extraction.extract_features(bone.voxels[opening.planes[0] - 4])
+feature_extraction.find_gap_ends(closed)
 
 # %% [markdown]
 # ## Exercises
@@ -301,7 +301,7 @@ check.exercise("3.3", arc_length)
 # | skeleton | `SliceFeatures.skeleton` | px |
 # | S | `SliceFeatures.hull` | half-planes |
 # | B - S, B and S | `.outer`, `.inner` | px |
-# | 10 points | `features.PAPER_SKIP` | px |
+# | 10 points | `feature_extraction.PAPER_SKIP_PX` | px |
 # | theta0, theta1 | `ChordFrame.end_angles` | rad |
 #
 # **Further reading.** Zhang and Suen, *A fast parallel algorithm for thinning digital patterns*, CACM 27 (1984).

@@ -32,9 +32,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ...errors import NoOpening
+from ...geometry import voxel_pieces
 from ...opening import Opening
 from ...prosthesis import Prosthesis
-from ...stages import prosthesis_volume
 from ...vault import opening_search, radius_measurement, radius_voxels
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
@@ -106,7 +106,7 @@ def design(
     tol, max_iter
         As for `sheet_motion.relax`, in mm; only with free weights.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -133,7 +133,7 @@ def design(
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
         outer, inner = radius_voxels.thickened(made.vault, outer=radii[0], inner=radii[1])
         piece = radius_voxels.voxels_between(made.vault, bone, outer=outer, inner=inner)
-        patch |= prosthesis_volume.main_piece(piece, one.sheet.voxels)
+        patch |= voxel_pieces.keep_main_piece(piece, one.sheet.voxels)
         working.append(made)
     if not patch.any():
         raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")

@@ -27,7 +27,7 @@ from ...drawing.canvas import (
     windowed,
 )
 from ...drawing.canvas_axes import Chart
-from ...stages.segmentation import BONE_HU, fill_holes, threshold_hu
+from ...stages.segmentation import BONE_HU, apply_threshold, fill_holes
 from ...volume import Volume
 from .controls import Slider, Switch, View
 from .panel import Panel
@@ -97,8 +97,8 @@ def threshold_view(
 ) -> View:
     """A slice with its bone, filled holes and pieces, and the histogram with the threshold."""
     area = float(np.prod(ct.spacing[1:]))
-    raw = threshold_hu(ct.voxels[plane], hu)
-    bone = fill_holes(raw[None], max_hole / area)[0]
+    raw = apply_threshold(ct.voxels[plane], hu)
+    bone = fill_holes(raw[None], max_hole_px=max_hole / area)[0]
     labels, n_parts = ndimage.label(bone, np.ones((3, 3)))
     canvas = Canvas(SIDE + 360, SIDE)
     window = Window.whole((0, 0, SIDE, SIDE), raw.shape)

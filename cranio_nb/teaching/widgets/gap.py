@@ -73,13 +73,13 @@ class Slices:
         self.bone = bone.crop((slice(None), rows, cols))
         self.sheet = None if opening is None else opening.crop((slice(None), rows, cols))
         self.px = float(bone.spacing[1:].mean())
-        self.seen = lru_cache(maxsize=8)(lambda plane: stage.slice_features(self.bone.voxels[plane]))
+        self.seen = lru_cache(maxsize=8)(lambda plane: stage.extract_features(self.bone.voxels[plane]))
         self.drawn = lru_cache(maxsize=8)(lambda plane: _ground(self, plane))
 
     def ends(self, plane: int, skip: float, reach: float) -> tuple[GapEnds, GapEnds]:
         """Outer and inner gap ends; `skip` and `reach` in mm."""
         opening = None if self.sheet is None else self.sheet.voxels[plane]
-        return stage.gap_ends(self.seen(plane), opening, skip=skip / self.px, reach=reach / self.px)
+        return stage.find_gap_ends(self.seen(plane), opening, skip_px=skip / self.px, reach_px=reach / self.px)
 
 
 def features_view(part: Slices, plane: int, skip: float, reach: float) -> View:
@@ -142,7 +142,7 @@ def fitted(seen: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, skip:
     used = []
     for point in ends.points:
         run = min(runs, key=lambda r: np.hypot(*(r[0] - point)))
-        used.append(boundary[stage.used_points(boundary, run, skip, reach)])
+        used.append(boundary[stage.select_tangent_points(boundary, run, skip_px=skip, reach_px=reach)])
     return Fit(ends, tuple(used), BLUE if is_outer else VERMILLION)
 
 

@@ -39,8 +39,8 @@ def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
     towards : array_like, shape (3,)
         From the patch to the viewer, LPS; `Opening.direction` looks straight at it.
     """
-    raw = stage.extract(patch, smooth=False)
-    smoothed = lru_cache(maxsize=None)(lambda n: raw if n == 0 else stage.extract(patch, n_steps=n))
+    raw = stage.extract_surface(patch, smooth=False)
+    smoothed = lru_cache(maxsize=None)(lambda n: raw if n == 0 else stage.extract_surface(patch, n_steps=n))
     seen = lru_cache(maxsize=None)(lambda n: _shaded(smoothed(n), towards))
     moved = lru_cache(maxsize=None)(lambda n: np.linalg.norm(smoothed(n).vertices - raw.vertices, axis=1))
     controls = (Slider("steps", "smoothing steps", 0, 48, 24),)

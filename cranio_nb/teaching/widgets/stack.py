@@ -104,9 +104,9 @@ def _filled(
     result: slicewise.SliceResult, bone: NDArray[np.bool_], near: NDArray[np.bool_], min_area: float
 ) -> NDArray[np.bool_]:
     if result.status == "hull":
-        return prosthesis_volume.partial_loss(bone, min_area=min_area, region=near)
+        return prosthesis_volume.fill_partial_loss(bone, min_area_px=min_area, region=near)
     if result.curves.size:
-        return prosthesis_volume.patch(result.curves[0], result.curves[1], bone)
+        return prosthesis_volume.fill_gap(result.curves[0], result.curves[1], bone)
     return np.zeros_like(bone)
 
 
