@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 from skimage.measure import marching_cubes
 
+from ..geometry.slice_distance import plane_distances
 from ..mesh import Mesh
 from ..volume import Volume
 
@@ -122,27 +123,14 @@ def _field(part: Volume) -> Volume:
     padded = np.pad(part.voxels, [(0, int(-n % b)) for n, b in zip(part.shape, block, strict=True)])
     p, r, c = (n // b for n, b in zip(padded.shape, block, strict=True))
     share = padded.reshape(p, block[0], r, block[1], c, block[2]).mean(axis=(1, 3, 5), dtype=np.float32)
-    affine = part.affine.copy()
-    affine[:3, 3] = part.to_world((block - 1) / 2)
-    affine[:3, :3] *= block
-    split = max(1, round(float(np.linalg.norm(affine[:3, 0])) / _COARSE))
+    coarse = Volume(share, part.affine_from((block - 1) / 2, block))
+    split = max(1, round(float(coarse.spacing[0]) / _COARSE))
     field = share - np.float32(0.4)
     if split > 1:
-        field = ndimage.zoom(_plane_distances(share > 0.4), (((p - 1) * split + 1) / p, 1, 1), order=1)
-        affine[:3, 0] /= split
+        distances = plane_distances(share > 0.4, 8.0).astype(np.float32)
+        field = ndimage.zoom(distances, (((p - 1) * split + 1) / p, 1, 1), order=1)
     sigma = (0.7, 0.7, 0.7) if split == 1 else (0.8 * split, 1.3, 1.3)
-    return Volume(ndimage.gaussian_filter(field, sigma), affine)
-
-
-def _plane_distances(inside: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Signed distance to the outline within each plane, px, positive inside, cut off at 8 px."""
-    far = np.float32(8)
-    out = np.empty(inside.shape, np.float32)
-    for k, plane in enumerate(inside):
-        out[k] = ndimage.distance_transform_edt(plane) if plane.any() else 0
-        out[k] -= ndimage.distance_transform_edt(~plane) if not plane.all() else 0
-        out[k] = np.clip(out[k] if plane.any() else -far, -far, far)
-    return out
+    return Volume(ndimage.gaussian_filter(field, sigma), coarse.affine_from((0, 0, 0), (1 / split, 1, 1)))
 
 
 def render(solids: Sequence[Solid], towards: ArrayLike, *, px: float = 0.5, shaded: bool = True) -> Picture:

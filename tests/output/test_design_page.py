@@ -7,7 +7,7 @@ from html.parser import HTMLParser
 
 import pytest
 
-from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, balloon_ranges, measure_opening, place, telling_slices
+from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, balloon_ranges
 from cranio_nb.output import design_page
 from cranio_nb.pipeline.run import RunResult, run_design
 from cranio_nb.readers import Finding
@@ -117,29 +117,6 @@ def test_markup_in_findings_is_shown_not_run(bare):
     text = design_page.report_page(dataclasses.replace(bare, findings=(evil,)))
     assert "<script" not in text and "&lt;script&gt;" in text
     assert "<script>alert('x')</script>&\"" in Page(text).text
-
-
-def test_slices_shown_are_spread_and_hold_each_kind():
-    statuses = ["hull", "hull", *["balloon"] * 20, "carried", *["balloon"] * 5, "skipped"]
-    chosen = telling_slices(statuses, 6)
-    assert chosen == sorted(set(chosen)) and len(chosen) == 6
-    assert {statuses[i] for i in chosen} == {"hull", "balloon", "carried", "skipped"}
-    assert telling_slices(["balloon"] * 3, 6) == [0, 1, 2]
-    assert telling_slices([], 6) == []
-    assert telling_slices(["balloon"] * 60, 6) == [5, 15, 25, 35, 45, 55]
-
-
-def test_words_for_places_are_the_patients():
-    assert place([1, 0, 0]) == "left" and place([-0.7, -0.7, 0]) == "right, front"
-    assert place([0, 0.6, 0.8]) == "back, top"
-
-
-def test_opening_is_measured(result):
-    (one,) = result.sizes
-    assert one == measure_opening(result.case.openings[0])
-    assert one.place.startswith("left") and result.case.openings[0].planes == (one.planes[0], one.planes[1] + 1)
-    assert one.centre == pytest.approx(tuple(result.case.openings[0].centre))
-    assert one.direction == pytest.approx(tuple(result.case.openings[0].direction))
 
 
 @pytest.mark.parametrize(("value", "text"), [(None, "-"), (3, "3"), (2.5, "2.50"), (True, "True"), ("x", "x")])
