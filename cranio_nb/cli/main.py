@@ -23,7 +23,7 @@ from .prior import prior
 if TYPE_CHECKING:
     from data_synth import Case
 
-    from ..evaluation.paper_tables import OpeningSize
+    from ..evaluation.opening_size import OpeningSize
 
 # a command loads what it works with only when it runs, so that `--help` is there at once
 _SIZES = ("tiny", "class", "full")
@@ -240,7 +240,7 @@ def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, .
       cranio-nb inspect scans/head_ct
       cranio-nb inspect skull.nrrd --mask --json
     """
-    from ..evaluation.paper_tables import measure_opening
+    from ..evaluation.opening_size import measure_opening
     from ..output.design_folder import load_record
     from ..stages.segmentation import bone_of
     from ..vault.opening_search import find_openings

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..drawing import figures
 from ..drawing.shading import skull_surface, view_axes
 from ..evaluation.against_truth import SIDES
-from ..evaluation.paper_tables import OpeningSize, measure_opening
+from ..evaluation.opening_size import OpeningSize, measure_opening
 from ..mesh import Mesh
 from ..pipeline.compare import MEASURES, Comparison, records
 from . import files

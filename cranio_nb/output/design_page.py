@@ -17,16 +17,16 @@ from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from ..drawing import figures
 from ..drawing.shading import skull_surface
+from ..evaluation.opening_size import OpeningSize
 from ..evaluation.paper_tables import (
     PAPER_BALLOONS,
     PAPER_DISTANCES,
     STATUSES,
-    OpeningSize,
     balloon_ranges,
     count_statuses,
-    telling_slices,
+    pick_slices,
 )
-from ..implant.workshop import implant_data
+from ..implant.mass import weigh_implant
 from ..methods.slicewise import SlicedDesign, SliceResult
 from ..opening import Opening
 from ..pipeline.run import RunResult, TruthCheck, parameters_used
@@ -71,7 +71,7 @@ def report_page(result: RunResult) -> str:
         slices=slices,
         counts=count_statuses(slices),
         statuses=STATUSES,
-        implant=implant_data(made.mesh),
+        implant=weigh_implant(made.mesh),
         views=view_shots(result),
         pictures=slice_shots(result),
         balloons=balloon_tables(result),
@@ -137,7 +137,7 @@ def slice_shots(result: RunResult) -> list[Shot]:
         if part is None:
             continue
         at = f"opening {number_of}, slice" if len(first) > 1 else "slice"
-        for i in telling_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
+        for i in pick_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
             s, title = part.slices[i], f"{at} {i + 1} of {len(part.slices)}"
             skeleton = bool(made.parameters.get("axial", False))
             figure = figures.slice_figure(part, s, result.case.bone, made.patch, skeleton=skeleton)

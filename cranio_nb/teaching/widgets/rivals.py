@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...drawing.canvas import BLACK, BLUE, BONE, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, rgb_of, tinted
 from ...drawing.shading import Solid, render, view_axes
-from ...evaluation import scores
+from ...evaluation import mesh_distances
 from ...methods.you import mesh_to_voxels
 from ...methods.you import method as you
 from ...opening import Opening
@@ -80,7 +80,11 @@ def flat_fill(
     made = you.fill_between(bone, opening, you.find_guides(vault, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
     patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
-    off = np.zeros(0) if truth is None else scores.surface_distance(made.outer.mesh.vertices, truth.surface(OUTER))
+    off = (
+        np.zeros(0)
+        if truth is None
+        else mesh_distances.surface_distance(made.outer.mesh.vertices, truth.surface(OUTER))
+    )
     return FlatFill(made, _from_outside(made, opening.direction), patch, off)
 
 
@@ -195,11 +199,7 @@ def _mirrored_slice(bone: Volume, mirror: SymmetryPlane, plane: int) -> Canvas:
     mask = bone.voxels[plane]
     pixels = np.stack([np.full(mask.shape, plane), *np.indices(mask.shape)], axis=-1)
     world = bone.to_world(pixels.reshape(-1, 3))
-    index = np.rint(bone.to_voxel(mirror.mirror(world))).astype(np.intp)
-    inside = ((index >= 0) & (index < bone.shape)).all(axis=1)
-    image = np.zeros(mask.size, bool)
-    image[inside] = bone.voxels[tuple(index[inside].T)]
-    image = image.reshape(mask.shape)
+    image = bone.at(mirror.mirror(world), outside=False).reshape(mask.shape)
     canvas = Canvas(_SIDE, _SIDE)
     window = Window.whole((0, 0, _SIDE, _SIDE), mask.shape)
     canvas.show(tinted(tinted(tinted(plain(mask.shape), image, SKY), mask, ORANGE), mask & image, BONE), window)

@@ -12,7 +12,7 @@ from cranio_nb.curves import ChordFrame, GapEnds, cubic
 from cranio_nb.drawing.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
 from cranio_nb.drawing.described import described
 from cranio_nb.errors import InputRefused
-from cranio_nb.evaluation import scores
+from cranio_nb.evaluation import mesh_distances, scores
 from cranio_nb.methods import slicewise
 from cranio_nb.methods.catalogue import check_options, default_options
 from cranio_nb.methods.you import method as you
@@ -112,7 +112,9 @@ def design(skull, openings):
 
 @pytest.fixture(scope="session")
 def true(phantom, skull, openings, design):
-    return run.check_truth(design, skull().with_voxels(phantom().implant), skull(), openings()[0]).prosthesis
+    return run.check_truth(
+        design, skull().with_voxels(phantom().implant), skull(), openings()[0].head_centre
+    ).prosthesis
 
 
 @pytest.fixture(scope="session")
@@ -287,7 +289,7 @@ def test_unsmoothed_vertices_have_not_moved_and_smoothed_stay_in_their_voxel(sta
 
 def test_the_evaluation_line_counts_nodes(static, design, true):
     panel = widgets.evaluation(design, true).set(side="inner", limit=0.4)
-    distances = scores.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
+    distances = mesh_distances.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
     assert f"{100 * (distances <= 0.4).mean():.0f} % of the nodes lie within 0.4 mm" in panel.view.line
     assert f"max {distances.max():.2f} mm" in panel.view.line
 
@@ -304,7 +306,7 @@ def test_guiding_points_say_what_the_method_fills(static, skull, openings, true)
     made = you.fill_between(
         skull(), openings()[0], you.find_guides(radius_measurement.measure_around(skull(), openings()[0]), 8)
     )
-    off = scores.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
+    off = mesh_distances.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
     assert panel.view.line.startswith("8 guiding points: ")
     assert f"{off.mean():.2f} mm from the true surface on average, {off.max():.2f} mm at most" in panel.view.line
 
