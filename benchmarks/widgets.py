@@ -107,7 +107,7 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     yield "balloon: step (the player)", measure(ball, "step", list(range(5, 60)), repeats)
     yield "patch: slice", measure(widgets.patch(bone, one), "plane", near, repeats)
     made = slicewise.design(bone, openings, axial=True)
-    true = run.check_truth(made, bone.with_voxels(case.implant), bone, one).prosthesis
+    true = run.check_truth(made, bone.with_voxels(case.implant), bone, one.head_centre).prosthesis
     shown = widgets.evaluation(made, true)
     yield "evaluation: scale", measure(shown, "top", [0.5, 1.0, 2.0], repeats)
 

@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from ..geometry import face_sides
 from ..mesh import Mesh
-from ..opening import Opening
 from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
 from ..stages import surface_reconstruction
 from ..volume import Volume
-from . import scores
-from .scores import Score
+from .mesh_distances import distance_stats, in_voxels, surface_distance
+from .scores import Score, score
 
 SIDES = {"outer": OUTER, "inner": INNER}
 """The sides that are measured, by name."""
@@ -46,7 +45,7 @@ class TruthCheck:
     table3: dict[str, DistanceStats]
 
 
-def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Opening) -> TruthCheck:
+def check_truth(made: Prosthesis, truth: Volume, bone: Volume, head_centre: NDArray[np.float64]) -> TruthCheck:
     """Measure a design against the missing bone.
 
     Parameters
@@ -57,24 +56,24 @@ def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Opening)
         Bool mask of the missing bone on the grid of `bone`.
     bone : Volume
         The skull with the hole.
-    largest : Opening
-        Its head centre tells outside from inside.
+    head_centre : ndarray, shape (3,)
+        World mm of a point inside the cranial cavity; it tells outside from inside.
     """
-    return against(made, true_prosthesis(truth, bone, largest), bone)
+    return measure_against(made, true_prosthesis(truth, bone, head_centre), bone)
 
 
-def true_prosthesis(truth: Volume, bone: Volume, largest: Opening) -> Prosthesis:
+def true_prosthesis(truth: Volume, bone: Volume, head_centre: NDArray[np.float64]) -> Prosthesis:
     """The missing bone as a prosthesis: its mesh with sides. Parameters as in `check_truth`."""
     mesh = surface_reconstruction.extract_surface(truth)
-    return Prosthesis(mesh, face_sides.label_faces(mesh, bone, largest.head_centre), truth, "truth")
+    return Prosthesis(mesh, face_sides.label_faces(mesh, bone, head_centre), truth, "truth")
 
 
-def against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCheck:
+def measure_against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCheck:
     """Measure a design against another prosthesis with a patch on the same grid; see `check_truth`."""
     if made.patch is None or true.patch is None:
         raise InputRefused("NoPatch", f"The method {made.method} makes no voxels to compare with a mask.")
-    score = scores.score(made.patch, true.patch, bone)
-    return TruthCheck(true, score, side_distances(made, true), table3(made, true, bone))
+    found = score(made.patch, true.patch, bone)
+    return TruthCheck(true, found, side_distances(made, true), table3(made, true, bone))
 
 
 def side_distances(made: Prosthesis, true: Prosthesis) -> dict[str, NDArray[np.float64]]:
@@ -82,15 +81,15 @@ def side_distances(made: Prosthesis, true: Prosthesis) -> dict[str, NDArray[np.f
 
     Only sides that both have.
     """
-    return {name: scores.surface_distance(own.vertices, other) for name, own, other in _both_sides(made, true)}
+    return {name: surface_distance(own.vertices, other) for name, own, other in _both_sides(made, true)}
 
 
 def table3(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, DistanceStats]:
     """Side -> a row of the paper's Table 3, in voxels of the bone's grid."""
     found = {}
     for name, own, other in _both_sides(made, true):
-        nodes = scores.in_voxels(own, bone).vertices
-        found[name] = scores.distance_stats(scores.surface_distance(nodes, scores.in_voxels(other, bone)))
+        nodes = in_voxels(own, bone).vertices
+        found[name] = distance_stats(surface_distance(nodes, in_voxels(other, bone)))
     return found
 
 

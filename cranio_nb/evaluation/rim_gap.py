@@ -67,13 +67,6 @@ def distance_to_voxels(points: NDArray[np.float64], mask: Volume) -> NDArray[np.
     _, near = cKDTree(mask.to_world(surface)).query(points, k=np.arange(1, 1 + min(8, len(surface))))
     step = at[:, None] - surface[near]
     outside = step - np.clip(step, -0.5, 0.5)
-    gap = np.linalg.norm(outside @ mask.affine[:3, :3].T, axis=2).min(axis=1)
-    gap[_holds(mask, at)] = 0
+    gap = np.linalg.norm(outside @ mask.edges, axis=2).min(axis=1)
+    gap[mask.at_index(at, outside=False)] = 0
     return gap
-
-
-def _holds(mask: Volume, at: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether fractional voxel indices, shape (N, 3), fall into a true voxel."""
-    index = np.rint(at).astype(int)
-    known = np.flatnonzero(((index >= 0) & (index < mask.shape)).all(axis=1))
-    return np.isin(np.arange(len(at)), known[mask.voxels[tuple(index[known].T)]])

@@ -14,7 +14,7 @@ from typing import Any
 
 from ..evaluation.paper_tables import balloon_ranges, count_statuses
 from ..geometry.mesh_check import MeshReport, check_mesh
-from ..implant.workshop import implant_data
+from ..implant.mass import weigh_implant
 from ..methods.catalogue import METHODS, default_options
 from ..pipeline.run import RunResult
 from ..prosthesis import Prosthesis
@@ -131,7 +131,7 @@ def made_record(made: Prosthesis) -> dict[str, Any]:
         "slices": slices,
         "slice_counts": count_statuses(slices),
         "balloons": balloon_ranges(slices),
-        "implant": implant_data(made.mesh),
+        "implant": weigh_implant(made.mesh),
         "versions": versions(),
     }
 

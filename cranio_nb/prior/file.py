@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CannotWrite, InputRefused
-from .alignment import Cloud
 from .shape_prior import Prior
+from .skull_points import SkullPoints
 from .vault_radii import vault_rays
 
 VERSION = 1
@@ -25,27 +25,41 @@ VERSION = 1
 _REMEDY = "Make one with `cranio-nb prior learn`."
 
 
-def save(prior: Prior, path: Path) -> None:
+def save_prior(prior: Prior, path: Path) -> None:
     """Write a prior, whole or not at all.
+
+    Parameters
+    ----------
+    prior : Prior
+    path : Path
+        Of the file, in a folder that is there.
 
     Raises
     ------
     CannotWrite
         ``CannotWrite`` when the system refuses; what was there before is still there.
     """
-    inside, outside, radii = (np.asarray(a, np.float32) for a in (prior.mean.inside, prior.mean.outside, prior.radii))
+    outer, inner, radii = (np.asarray(a, np.float32) for a in (prior.mean.outer, prior.mean.inner, prior.radii))
     try:
         with tempfile.TemporaryDirectory(prefix=".part-", dir=path.absolute().parent) as folder:
             part = Path(folder) / "prior.npz"
-            np.savez_compressed(part, version=np.int64(VERSION), inside=inside, outside=outside, radii=radii)
+            np.savez_compressed(part, version=np.int64(VERSION), inside=inner, outside=outer, radii=radii)
             os.replace(part, path)
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CannotWrite("CannotWrite", f"The prior could not be written: {reason}.") from error
 
 
-def load(path: Path) -> Prior:
+def load_prior(path: Path) -> Prior:
     """Read a prior.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    Prior
 
     Raises
     ------
@@ -76,5 +90,6 @@ def _checked(arrays: dict[str, NDArray]) -> Prior:
         good = array.dtype == np.float32 and array.ndim == len(shape) and len(array) > 0
         if not good or array.shape[1:] != shape[1:] or not np.isfinite(array).all():
             raise InputRefused("NoPrior", f"The prior is damaged: its {name} part is not as it should be.", _REMEDY)
-    mean = Cloud(arrays["inside"].astype(float), arrays["outside"].astype(float), np.zeros(3), np.eye(3))
+    outer, inner = (arrays[name].astype(float) for name in ("outside", "inside"))
+    mean = SkullPoints(outer=outer, inner=inner, centre=np.zeros(3), axes=np.eye(3))
     return Prior(mean, arrays["radii"])

@@ -31,7 +31,7 @@ import numpy as np
 from cranio_nb.drawing import figures
 from cranio_nb.geometry import face_sides
 from cranio_nb.geometry.mesh_check import check_mesh
-from cranio_nb.implant.workshop import workshop
+from cranio_nb.implant.mass import DENSITIES, weigh_implant
 from cranio_nb.mesh import Mesh
 from cranio_nb.methods import slicewise
 from cranio_nb.output import files
@@ -164,10 +164,10 @@ print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
 # another question: a rim that widens inwards holds it back.
 
 # %% tags=["nbval-check-output"]
-data = workshop.implant_data(smooth)
+data = weigh_implant(smooth)
 print(f"{data.volume_cm3:.1f} cm3")
 for material, mass in data.mass_g.items():
-    print(f"{material:10} {workshop.DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
+    print(f"{material:10} {DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
 
 # %% tags=["nbval-check-output"]
 path = Path(tempfile.mkdtemp()) / "prosthesis.stl"

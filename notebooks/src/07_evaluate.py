@@ -48,7 +48,7 @@ case = classroom.load("class", needs_truth=True)
 bone, truth = segmentation.segment(case.ct), case.truth
 openings = opening_search.find_openings(bone)
 made = slicewise.design(bone, openings)
-seen = check_truth(made, truth, bone, openings[0])
+seen = check_truth(made, truth, bone, openings[0].head_centre)
 
 # %% [markdown]
 # ## 1. Table 3: distances of nodes

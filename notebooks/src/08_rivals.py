@@ -52,7 +52,7 @@ from cranio_nb.vault import opening_search, symmetry
 case = classroom.load("class", needs_truth=True)
 bone, px = segmentation.segment(case.ct), case.px
 openings = opening_search.find_openings(bone)
-true = measure.true_prosthesis(case.truth, bone, openings[0])
+true = measure.true_prosthesis(case.truth, bone, openings[0].head_centre)
 
 # %% [markdown]
 # ## 1. The hull: a rubber sheet
@@ -226,7 +226,7 @@ rivals = {"hull": sheet, "You et al.": flat, "reflection": copies["our head", Tr
 rivals["slice method"] = slicewise.design(bone, openings)
 print("                outer mean   max   inner mean   max    Dice  HD95 (mm)")
 for name, made in rivals.items():
-    seen = measure.against(made, true, bone)
+    seen = measure.measure_against(made, true, bone)
     out, inn = seen.table3["outer"], seen.table3["inner"]
     print(f"{name:14} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
     print(f" {seen.score.dice:7.3f} {seen.score.hd95:6.2f}")

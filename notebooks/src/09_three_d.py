@@ -54,7 +54,7 @@ from cranio_nb.vault import opening_search, radius_measurement
 case = classroom.load("class", needs_truth=True)
 bone = segmentation.segment(case.ct)
 openings = opening_search.find_openings(bone)
-true = measure.true_prosthesis(case.truth, bone, openings[0])
+true = measure.true_prosthesis(case.truth, bone, openings[0].head_centre)
 
 # %% [markdown]
 # ## 1. The vault as a map
@@ -264,7 +264,7 @@ over = {name: method.design(skull, largest, smooth=False) for name, method in me
 # %% tags=["nbval-check-output"]
 print("              outer mean   max   inner mean   max    Dice    large: Dice  HD95 (mm)")
 for name, one in made.items():
-    seen = measure.against(one, true, bone)
+    seen = measure.measure_against(one, true, bone)
     out, inn = seen.table3["outer"], seen.table3["inner"]
     print(f"{name:12} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
     far, patch = scores.hd95(over[name].patch, wide.truth), over[name].patch

@@ -33,7 +33,7 @@ from cranio_nb.drawing import figures, palette
 from cranio_nb.drawing.coarse_skull import skull_surface
 from cranio_nb.drawing.shading import Solid, render
 from cranio_nb.evaluation import against_truth as measure
-from cranio_nb.evaluation import paper_tables, scores
+from cranio_nb.evaluation import mesh_distances, paper_tables
 from cranio_nb.methods import reflection, slicewise, thin_plate
 from cranio_nb.methods.dnurbs.method import method as dnurbs
 from cranio_nb.methods.you.method import method as you
@@ -130,8 +130,8 @@ designs["thin-plate"] = thin_plate.design(bone, openings)
 designs["dnurbs"] = dnurbs.design(bone, openings)
 
 # %%
-true = measure.true_prosthesis(case.truth, bone, openings[0])
-seen = {name: measure.against(design, true, bone) for name, design in designs.items()}
+true = measure.true_prosthesis(case.truth, bone, openings[0].head_centre)
+seen = {name: measure.measure_against(design, true, bone) for name, design in designs.items()}
 
 
 def print_row(name, top, inner=None):
@@ -172,7 +172,7 @@ print_row("printed: You", printed["You et al."])
 # %% tags=["nbval-check-output"]
 tops = {name: design.surface(OUTER) for name, design in designs.items()}
 flat, cap = tops["You et al."], true.surface(OUTER)
-height = scores.surface_distance(cap.vertices, flat).max()
+height = mesh_distances.surface_distance(cap.vertices, flat).max()
 mean = seen["You et al."].distances["outer"].mean()
 print(f"cap {height:.2f} mm high, mean {mean:.2f} mm: ratio {mean / height:.2f}")
 for whose, row in (

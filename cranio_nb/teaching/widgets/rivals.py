@@ -15,14 +15,15 @@ from ...drawing.canvas import Canvas
 from ...drawing.palette import BLACK, BLUE, BONE, GREY, ORANGE, SKY, VERMILLION, rgb_of
 from ...drawing.pixels import Window, plain, tinted
 from ...drawing.shading import Solid, render, view_axes
-from ...evaluation import scores
+from ...evaluation import mesh_distances
 from ...methods.you import mesh_to_voxels
 from ...methods.you import method as you
 from ...opening import Opening
 from ...prosthesis import OUTER, Prosthesis
 from ...vault import radius_measurement, symmetry
+from ...vault.outer_surface import OuterSurface, measure_outer_surface
 from ...vault.ray_grid import RadiusMap
-from ...vault.symmetry import OuterSurface, SymmetryPlane
+from ...vault.symmetry import SymmetryPlane
 from ...volume import Volume
 from .bone import dress
 from .controls import Slider, View
@@ -81,7 +82,11 @@ def flat_fill(
     made = you.fill_between(bone, opening, you.find_guides(vault, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
     patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
-    off = np.zeros(0) if truth is None else scores.surface_distance(made.outer.mesh.vertices, truth.surface(OUTER))
+    off = (
+        np.zeros(0)
+        if truth is None
+        else mesh_distances.surface_distance(made.outer.mesh.vertices, truth.surface(OUTER))
+    )
     return FlatFill(made, _from_outside(made, opening.direction), patch, off)
 
 
@@ -139,7 +144,7 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     """
     found, surface = (
         symmetry.find_symmetry_plane(bone, opening.head_centre),
-        symmetry.measure_outer_surface(bone, opening.head_centre),
+        measure_outer_surface(bone, opening.head_centre),
     )
     plane = sum(opening.planes) // 2
     controls = (
@@ -155,7 +160,7 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
 
 def moved(plane: SymmetryPlane, surface: OuterSurface, turn: float, lean: float, shift: float) -> SymmetryPlane:
     """A plane turned and leaning by degrees about the point nearest to the eye, then shifted along its normal by mm."""
-    _, back, up = surface.axes
+    _, back, up = surface.grid.axes
     normal = plane.normal + np.tan(np.radians(turn)) * back + np.tan(np.radians(lean)) * up
     normal = normal / np.linalg.norm(normal)
     return replace(plane, point=plane.point + shift * normal, normal=normal)
@@ -167,7 +172,7 @@ def _mirror_view(
     """Bone and mirror image in a slice, and the residual over the vault."""
     canvas = Canvas(2 * _SIDE, _SIDE)
     canvas.inlay(_mirrored_slice(bone, mirror, plane), 0, 0)
-    residual = np.abs(symmetry.residuals(surface, mirror)).astype(np.float32)
+    residual = np.abs(symmetry.mirror_residuals(surface, mirror)).astype(np.float32)
     side = _SIDE - 90
     rows = np.linspace(0, len(residual) - 1, side).round().astype(int)
     left, top = _SIDE + 45, 34
@@ -196,11 +201,7 @@ def _mirrored_slice(bone: Volume, mirror: SymmetryPlane, plane: int) -> Canvas:
     mask = bone.voxels[plane]
     pixels = np.stack([np.full(mask.shape, plane), *np.indices(mask.shape)], axis=-1)
     world = bone.to_world(pixels.reshape(-1, 3))
-    index = np.rint(bone.to_voxel(mirror.mirror(world))).astype(np.intp)
-    inside = ((index >= 0) & (index < bone.shape)).all(axis=1)
-    image = np.zeros(mask.size, bool)
-    image[inside] = bone.voxels[tuple(index[inside].T)]
-    image = image.reshape(mask.shape)
+    image = bone.at(mirror.mirror(world), outside=False).reshape(mask.shape)
     canvas = Canvas(_SIDE, _SIDE)
     window = Window.whole((0, 0, _SIDE, _SIDE), mask.shape)
     canvas.show(tinted(tinted(tinted(plain(mask.shape), image, SKY), mask, ORANGE), mask & image, BONE), window)

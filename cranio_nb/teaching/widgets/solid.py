@@ -18,7 +18,7 @@ from ...drawing.palette import BLUE, GREEN, GREY, ORANGE, SKY, VERMILLION, rgb_o
 from ...drawing.pixels import RGB
 from ...drawing.shading import Solid, render, view_axes
 from ...errors import InputRefused
-from ...evaluation import scores
+from ...evaluation import mesh_distances
 from ...mesh import Mesh
 from ...prosthesis import INNER, OUTER, Prosthesis
 from ...stages import surface_reconstruction as stage
@@ -121,7 +121,7 @@ def distance_map(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> Distan
     own, other = prosthesis.surface(side), truth.surface(side)
     if not len(own.faces) or not len(other.faces):
         raise InputRefused("EmptyMesh", "The prosthesis or the truth lacks its outer or inner side.")
-    distances = scores.surface_distance(own.vertices, other)
+    distances = mesh_distances.surface_distance(own.vertices, other)
     towards = own.area_vectors.sum(axis=0)
     px = pixel(own, towards, _SIDE - 60)
     values = np.repeat(distances[:, None], 3, axis=1)

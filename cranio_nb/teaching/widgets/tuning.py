@@ -130,7 +130,7 @@ Measured = tuple[tuple[float, ...], DistanceMap]
 def _measured(bone: Volume, truth: Volume, openings: tuple[Any, ...], options: dict[str, Any]) -> Measured:
     """Measures of one design in the order of `_MEASURES`, and its map of distances."""
     made = slicewise.design(bone, openings, **options)
-    check = run.check_truth(made, truth, bone, openings[0])
+    check = run.check_truth(made, truth, bone, openings[0].head_centre)
     return measures(made, check), distance_map(made, check.prosthesis, 0)
 
 

@@ -14,7 +14,7 @@ from cranio_nb.drawing.described import described
 from cranio_nb.drawing.palette import BLUE, GREEN, rgb_of
 from cranio_nb.drawing.pixels import Window, windowed
 from cranio_nb.errors import InputRefused
-from cranio_nb.evaluation import scores
+from cranio_nb.evaluation import mesh_distances, scores
 from cranio_nb.methods import slicewise
 from cranio_nb.methods.catalogue import check_options, default_options
 from cranio_nb.methods.you import method as you
@@ -24,6 +24,7 @@ from cranio_nb.stages import deformable_model, feature_extraction, segmentation
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets import inflation, tuning
 from cranio_nb.vault import radius_measurement, symmetry
+from cranio_nb.vault.outer_surface import measure_outer_surface
 from cranio_nb.volume import Volume
 
 
@@ -113,7 +114,9 @@ def design(skull, openings):
 
 @pytest.fixture(scope="session")
 def true(phantom, skull, openings, design):
-    return run.check_truth(design, skull().with_voxels(phantom().implant), skull(), openings()[0]).prosthesis
+    return run.check_truth(
+        design, skull().with_voxels(phantom().implant), skull(), openings()[0].head_centre
+    ).prosthesis
 
 
 @pytest.fixture(scope="session")
@@ -288,7 +291,7 @@ def test_unsmoothed_vertices_have_not_moved_and_smoothed_stay_in_their_voxel(sta
 
 def test_the_evaluation_line_counts_nodes(static, design, true):
     panel = widgets.evaluation(design, true).set(side="inner", limit=0.4)
-    distances = scores.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
+    distances = mesh_distances.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
     assert f"{100 * (distances <= 0.4).mean():.0f} % of the nodes lie within 0.4 mm" in panel.view.line
     assert f"max {distances.max():.2f} mm" in panel.view.line
 
@@ -305,7 +308,7 @@ def test_guiding_points_say_what_the_method_fills(static, skull, openings, true)
     made = you.fill_between(
         skull(), openings()[0], you.find_guides(radius_measurement.measure_around(skull(), openings()[0]), 8)
     )
-    off = scores.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
+    off = mesh_distances.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
     assert panel.view.line.startswith("8 guiding points: ")
     assert f"{off.mean():.2f} mm from the true surface on average, {off.max():.2f} mm at most" in panel.view.line
 
@@ -327,7 +330,7 @@ def test_the_found_plane_has_the_least_residual(static, skull, openings):
 
 def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, openings):
     centre = openings()[0].head_centre
-    found, surface = symmetry.find_symmetry_plane(skull(), centre), symmetry.measure_outer_surface(skull(), centre)
+    found, surface = symmetry.find_symmetry_plane(skull(), centre), measure_outer_surface(skull(), centre)
     other = widgets.rivals.moved(found, surface, turn=0.0, lean=0.0, shift=1.0)
     np.testing.assert_allclose(other.mirror(centre) - found.mirror(centre), 2 * found.normal, atol=1e-9)
 
