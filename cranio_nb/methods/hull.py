@@ -1,12 +1,12 @@
 """The simplest rival: a rubber sheet over the hole, the convex hull minus bone.
 
-Bone mask in, `Prosthesis` out. The 2011 paper (doi 10.5220/0003356601370142) uses the convex hull for slices of
+Bone mask in, pieces out. The 2011 paper (doi 10.5220/0003356601370142) uses the convex hull for slices of
 partial loss (its Fig. 6): hull minus bone, without small islands and without the biggest region, the cavity.
 
-Faithful, with `paper_options`: that rule on every axial slice whose ring of bone is closed. The rule says nothing of a
-slice whose ring is open, since there the hull minus bone runs into the cavity, which is the biggest region: it would
-give nothing. Ours is an inner surface: the hull of the endocranial contour, the points where rays from inside the head
-first meet bone. What lies between the two hulls and in the hole's cone is a plate, flat along each slice.
+Faithful, with the preset "paper": that rule on every axial slice whose ring of bone is closed. The rule says nothing
+of a slice whose ring is open, since there the hull minus bone runs into the cavity, which is the biggest region: it
+would give nothing. Ours is an inner surface: the hull of the endocranial contour, the points where rays from inside
+the head first meet bone. What lies between the two hulls and in the hole's cone is a plate, flat along each slice.
 
 Ours, and the default, is the same in space: the hull of the vault's outer surface around the hole, minus the hull of
 its inner surface. It needs no slicing direction, closes holes at the top of the head too, where axial slices hold no
@@ -18,8 +18,7 @@ R - sqrt(R^2 - D^2 / 4) too deep, 3 mm for 40 mm and 17 mm for 95 mm at R = 75 m
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,14 +27,12 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
-from ..errors import NoOpening
 from ..opening import Opening
-from ..prosthesis import Prosthesis
 from ..stages import prosthesis_volume
-from ..vault import opening_search, radius_map
+from ..vault import radius_map
 from ..vault.radius_map import RadialChart
 from ..volume import Volume
-from .assembly import assemble
+from .piece import Piece
 
 _RAYS = 360  # around a slice
 _ISLAND = 4.0  # mm2: smaller pieces of a slice are dropped
@@ -63,62 +60,31 @@ class HullDesign:
     slices: tuple[dict[str, Any], ...] = ()
 
 
-def paper_options(bone: Volume) -> dict[str, Any]:
-    """Options of `design` as the paper uses the hull: slice by slice along the planes of the scan."""
-    return {"axial": True}
+PRESETS = {"paper": {"axial": True}}
+"""The paper uses the hull slice by slice along the planes of the scan."""
 
 
-def design(
-    bone: Volume,
-    openings: Sequence[Opening] | None = None,
-    *,
-    axial: bool = False,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis by convex hulls.
+def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) -> Iterator[Piece]:
+    """Close each opening by convex hulls.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
+    openings : sequence of Opening
+        Openings to close.
     axial : bool
         Hulls of the slices along the planes of the scan, as the paper; otherwise hulls in space.
-    smooth : bool
-        Surface without stairs (see `surface.extract`).
-    progress : callable, optional
-        Called with (stage, fraction done).
 
-    Returns
-    -------
-    Prosthesis
-        With `axial`, `record["slices"]` holds status and reason of every slice. `working` holds a `HullDesign` per
-        opening.
-
-    Raises
+    Yields
     ------
-    NoOpening
-        When the vault is closed, or no slice of the opening holds a rim for a hull to rest on.
+    Piece
+        With `axial`, the record's `slices` hold status and reason of every slice. `working` holds a `HullDesign`.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
-    openings = opening_search.find_openings(bone) if openings is None else openings
-    made, patch = [], np.zeros(bone.shape, bool)
-    for i, one in enumerate(openings):
-        tell("hull", 0.9 * i / len(openings))
-        part, piece = (_by_slices if axial else _in_space)(bone, one)
-        made.append(part)
-        patch |= piece
-    if not patch.any():
-        raise NoOpening("NothingBridged", "No slice of the opening has a rim for a hull.", "Try the hull in space.")
-    tell("surface", 0.9)
-    record = {}
-    if axial:
-        record["slices"] = [{"opening": i, **entry} for i, part in enumerate(made) for entry in part.slices]
-    return assemble(patch, bone, openings, "hull", options, began=began, working=made, record=record)
+    for opening in openings:
+        made, voxels = (_by_slices if axial else _in_space)(bone, opening)
+        record = {"slices": list(made.slices)} if axial else {}
+        yield Piece(voxels, (made,), record)
 
 
 def _in_space(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:

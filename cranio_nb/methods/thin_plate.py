@@ -1,4 +1,4 @@
-"""A thin plate across the hole: bone mask in, `Prosthesis` out.
+"""A thin plate across the hole: bone mask in, pieces out.
 
 Idea: seen from inside the head each surface of the vault is one radius per direction (`chart`). A plate that lies on
 the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
@@ -27,8 +27,7 @@ functions, the third order, the smoothing, the robust weights, the inner surface
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import comb
 from pathlib import Path
@@ -39,18 +38,17 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from ..errors import InputRefused, NoOpening
+from ..errors import InputRefused
 from ..opening import Opening
 from ..prior import file as prior_file
 from ..prior.shape_prior import Prior, expect
-from ..prosthesis import Prosthesis
 from ..stages import prosthesis_volume
-from ..vault import opening_search, radius_map, symmetry
+from ..vault import radius_map, symmetry
 from ..vault.radius_map import RadialChart
 from ..vault.ray_grid import extended
 from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
-from .assembly import assemble
+from .piece import Piece
 
 Array = NDArray[np.float64]
 
@@ -89,67 +87,48 @@ class Plate:
     expected: tuple[Array, Array] | None
 
 
-def design(
+def pieces(
     bone: Volume,
-    openings: Sequence[Opening] | None = None,
+    openings: Sequence[Opening],
     *,
-    second: float = 1.3,
-    third: float = 1.8,
-    mirror: float = 1.6,
+    second_mm: float = 1.3,
+    third_mm: float = 1.8,
+    mirror_mm: float = 1.6,
     prior: str = "",
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis by bending thin plates across the hole.
+) -> Iterator[Piece]:
+    """Close each opening by bending thin plates across it.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
-    second, third : float
+    openings : sequence of Opening
+        Openings to close.
+    second_mm, third_mm : float
         The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
-    mirror : float
+    mirror_mm : float
         The length c over which bone is smoothed towards the curvature of the other side, mm; 0 for none.
     prior : str
         File made by `cranio-nb prior learn`: the plate is then held to what intact skulls let expect. Empty for none.
-    smooth : bool
-        Surface without stairs (see `surface.extract`).
-    progress : callable, optional
-        Called with (stage, fraction done).
 
-    Returns
-    -------
-    Prosthesis
-        `record["symmetry"]` describes the symmetry plane or says why there is none. `working` holds a `Plate` per
-        opening.
+    Yields
+    ------
+    Piece
+        The record's `symmetry` describes the symmetry plane or says why there is none; the piece is empty where too
+        little bone is seen around the opening. `working` holds a `Plate`.
 
     Raises
     ------
-    NoOpening
-        When the vault is closed, or too little bone is seen around every opening.
     InputRefused
         ``NoPrior`` or ``PriorDoesNotFit``.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
     learned = prior_file.load(Path(prior)) if prior else None
-    openings = opening_search.find_openings(bone) if openings is None else openings
-    tell("symmetry", 0.1)
-    plane, found = _symmetry(bone, openings[0]) if mirror else (None, {"unused": "not asked for"})
-    patch = np.zeros(bone.shape, bool)
-    plates = []
-    for i, one in enumerate(openings):
-        tell("plates", 0.2 + 0.6 * i / len(openings))
-        plates.append(_plate(bone, one, plane, learned, {"second": second, "third": third, "likeness": mirror}))
-        patch |= _piece(plates[-1], one, bone)
-    if not patch.any():
-        raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
-    tell("surface", 0.8)
+    plane, found = _symmetry(bone, openings[0]) if mirror_mm else (None, {"unused": "not asked for"})
     record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
-    return assemble(patch, bone, openings, "thin-plate", options, began=began, working=plates, record=record)
+    lengths = {"second_mm": second_mm, "third_mm": third_mm, "mirror_mm": mirror_mm}
+    for opening in openings:
+        plate = _plate(bone, opening, plane, learned, lengths)
+        yield Piece(_solid(plate, opening, bone), (plate,), record)
 
 
 def bend(
@@ -159,9 +138,9 @@ def bend(
     *,
     like: Array | None = None,
     expected: Array | None = None,
-    second: float = 1.3,
-    third: float = 1.8,
-    likeness: float = 1.6,
+    second_mm: float = 1.3,
+    third_mm: float = 1.8,
+    mirror_mm: float = 1.6,
 ) -> Array:
     """Continue a map across a hole with the least bending.
 
@@ -177,7 +156,7 @@ def bend(
         A map of the same curvature, up to anything; nan where unknown.
     expected : ndarray, shape (M, N), optional
         A map to bend less far from, known everywhere; springs hold the plate to it in the hole.
-    second, third, likeness : float
+    second_mm, third_mm, mirror_mm : float
         The lengths a, b and c of the energy, mm; 0 for none.
 
     Returns
@@ -192,10 +171,10 @@ def bend(
         return out
     base = np.full(values.shape, np.median(values[beside][known])) if expected is None else expected
     data = np.where(known, (values - base)[beside], 0.0)
-    stiffness = _stiffness(beside, 2, second / mm) + _stiffness(beside, 3, third / mm)
+    stiffness = _stiffness(beside, 2, second_mm / mm) + _stiffness(beside, 3, third_mm / mm)
     push = np.zeros(len(data))
-    if like is not None and likeness:
-        held, push = _towards((like - base)[beside], beside, likeness / mm)
+    if like is not None and mirror_mm:
+        held, push = _towards((like - base)[beside], beside, mirror_mm / mm)
         stiffness = stiffness + held
     if expected is not None:
         stiffness = stiffness + sparse.diags_array(_SPRING * hole[beside])
@@ -299,12 +278,12 @@ def _expected(bone: Volume, vault: RadialChart, learned: Prior) -> tuple[Array, 
     return outer, inner
 
 
-def _piece(plate: Plate, one: Opening, bone: Volume) -> NDArray[np.bool_]:
-    """The patch between both plates."""
+def _solid(plate: Plate, opening: Opening, bone: Volume) -> NDArray[np.bool_]:
+    """The voxels between both plates; none where bone holds no plate."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
     outer, inner = radius_map.thickened(plate.chart, plate.outer, plate.inner)
-    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), one.sheet.voxels)
+    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), opening.sheet.voxels)
 
 
 def thinned(values: Array, nodes: int) -> Array:

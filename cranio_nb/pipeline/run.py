@@ -66,7 +66,7 @@ class RunResult:
         The scan and its openings.
     sizes : tuple of OpeningSize
         Place and size of each opening.
-    preset : {"default", "paper"}
+    preset : str
     prosthesis : Prosthesis
     mesh : MeshReport
     rim : GapStats or None
@@ -109,9 +109,9 @@ def run_design(
     path : path
         DICOM folder, NIfTI or NRRD file with a CT in HU or a bone mask.
     method : str
-        A key of `catalogue.METHODS`.
-    preset : {"default", "paper"}
-        Options to start from.
+        A name of the catalogue.
+    preset : str
+        Options to start from: "default", or a preset of the method such as "paper".
     options : dict, optional
         Options of the method that differ from the preset.
     mask : bool, optional

@@ -1,6 +1,6 @@
 """A rival on triangle meshes: guiding points on the rim of the hole, and flat fills between them.
 
-Bone mask in, `Prosthesis` out. In the spirit of You et al. 2009, "A new modeling method on skull defect repair", of
+Bone mask in, pieces out. In the spirit of You et al. 2009, "A new modeling method on skull defect repair", of
 which we had only what others write about it: voxels are split into tetrahedra, marching tetrahedra give the mesh of the
 defective skull, a user places guiding points, and computational geometry on that mesh alone fills the hole. Nothing
 asks the fill to leave the rim in the direction of the bone, hence the bias to planar shapes that it is known for:
@@ -17,9 +17,8 @@ over a spherical cap of height h the fill of least area lies h / 2 too deep in t
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,14 +28,13 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 from skimage.measure import find_contours
 
-from ...errors import InputRefused, NoOpening
+from ...errors import InputRefused
 from ...mesh import Mesh
 from ...opening import Opening
-from ...prosthesis import Prosthesis
 from ...stages import prosthesis_volume
-from ...vault import opening_search, radius_map
+from ...vault import radius_map
 from ...volume import Volume
-from ..assembly import assemble
+from ..piece import Piece
 from . import membrane, mesh_to_voxels, tetrahedra
 from .membrane import Loop, Membrane
 
@@ -75,86 +73,53 @@ class Filling:
     solid: Mesh
 
 
-def design(
-    bone: Volume,
-    openings: Sequence[Opening] | None = None,
-    *,
-    n_guides: int = 12,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis from guiding points that are found by themselves.
+def pieces(bone: Volume, openings: Sequence[Opening], *, n_guides: int = 12) -> Iterator[Piece]:
+    """Close each opening between guiding points that are found by themselves.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
+    openings : sequence of Opening
+        Openings to close.
     n_guides : int
         Guiding points around each hole, 3 at least.
-    smooth : bool
-        Surface without stairs (see `surface.extract`).
-    progress : callable, optional
-        Called with (stage, fraction done).
 
-    Returns
-    -------
-    Prosthesis
-        `working` holds a `Filling` per opening.
+    Yields
+    ------
+    Piece
+        As `between_guides`.
 
     Raises
     ------
-    NoOpening
-        When the vault is closed, or nothing of an opening could be filled.
     InputRefused
         ``TooFewGuides``; ``TangledRim`` when the rim of a hole crosses itself.
     """
-    began = time.perf_counter()
-    openings = opening_search.find_openings(bone) if openings is None else openings
-    guides = [find_guides(radius_map.look(bone, one), n_guides) for one in openings]
-    made = design_from_guides(bone, openings, guides, smooth=smooth, progress=progress)
-    options = {"n_guides": n_guides, "smooth": smooth}
-    return replace(made, parameters=options, record=made.record | {"seconds": time.perf_counter() - began})
+    guides = [find_guides(radius_map.look(bone, opening), n_guides) for opening in openings]
+    yield from between_guides(bone, openings, guides)
 
 
-def design_from_guides(
-    bone: Volume,
-    openings: Sequence[Opening],
-    guides: Sequence[NDArray[np.float64]],
-    *,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis from guiding points that somebody placed.
+def between_guides(bone: Volume, openings: Sequence[Opening], guides: Sequence[NDArray[np.float64]]) -> Iterator[Piece]:
+    """Close each opening between guiding points that somebody placed; `design.assemble` makes a prosthesis of it.
 
     Parameters
     ----------
-    bone, openings, smooth, progress
-        As for `design`.
+    bone, openings
+        As for `pieces`.
     guides : sequence of ndarray, shape (n, 3)
         For each opening at least 3 points near the outer edge of its rim, in order around the hole, world mm.
 
-    Returns
-    -------
-    Prosthesis
-        `parameters` holds the guides.
+    Yields
+    ------
+    Piece
+        The record's `fills` describe the outer and the inner fill; `working` holds a `Filling`.
     """
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
-    working = []
-    patch = np.zeros(bone.shape, bool)
-    for i, (one, points) in enumerate(zip(openings, guides, strict=True)):
-        tell("mesh", 0.9 * i / len(openings))
-        working.append(fill_between(bone, one, np.asarray(points, float)))
-        box = _box(bone, one, working[-1].guides)
-        patch[box] |= _piece(bone.crop(box), one.sheet.voxels[box], working[-1].solid)
-    if not patch.any():
-        raise NoOpening("NothingFilled", "Nothing of the opening could be filled.", "Place guiding points on its rim.")
-    tell("surface", 0.9)
-    options = {"guides": [np.asarray(points).tolist() for points in guides], "smooth": smooth}
-    fills = [_entry(side) for one in working for side in (one.outer, one.inner)]
-    return assemble(patch, bone, openings, "you", options, began=began, working=working, record={"fills": fills})
+    for opening, points in zip(openings, guides, strict=True):
+        filling = fill_between(bone, opening, np.asarray(points, float))
+        box = _box(bone, opening, filling.guides)
+        voxels = np.zeros(bone.shape, bool)
+        voxels[box] = _solid(bone.crop(box), opening.sheet.voxels[box], filling.solid)
+        yield Piece(voxels, (filling,), {"fills": [_entry(side) for side in (filling.outer, filling.inner)]})
 
 
 def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.float64]:
@@ -217,7 +182,7 @@ def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop,
     raise problem
 
 
-def _piece(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
+def _solid(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
     """Voxels inside the solid and off the bone, in one piece, without the slivers where a fill grazes the bone."""
     return prosthesis_volume.main_piece(
         ndimage.binary_opening(mesh_to_voxels.inside(closed, bone) & ~bone.voxels), opening
