@@ -18,7 +18,7 @@ import numpy as np
 os.environ["CRANIO_NB_MODE"] = "widget"
 
 from cranio_nb.drawing import figures
-from cranio_nb.methods import slicewise
+from cranio_nb.methods.design import design
 from cranio_nb.pipeline import run
 from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import widgets
@@ -106,7 +106,7 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     yield "balloon: N", measure(ball, "n", [11, 21, 31, 41], repeats)
     yield "balloon: step (the player)", measure(ball, "step", list(range(5, 60)), repeats)
     yield "patch: slice", measure(widgets.patch(bone, one), "plane", near, repeats)
-    made = slicewise.design(bone, openings, axial=True)
+    made = design(bone, openings, axial=True)
     true = run.check_truth(made, bone.with_voxels(case.implant), bone, one).prosthesis
     shown = widgets.evaluation(made, true)
     yield "evaluation: scale", measure(shown, "top", [0.5, 1.0, 2.0], repeats)

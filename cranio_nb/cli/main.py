@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from ..errors import CannotWrite, CranioError, InputRefused
-from ..methods.catalogue import METHODS, PRESETS, check_options
+from ..methods.catalogue import check_options
 from ..readers import ALLOWANCES, read_ct
 from .compare import compare
 from .lab import lab
 from .lessons import lessons
+from .method_name import MethodName, check_asked
 from .prior import prior
 
 if TYPE_CHECKING:
@@ -159,10 +160,8 @@ def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, a
 @main.command()
 @click.argument("scan", type=_PATH, metavar="INPUT")
 @click.option("--out", type=_PATH, required=True, help="Folder to write to; made if missing.")
-@click.option("--method", type=click.Choice(tuple(METHODS)), default="slicewise", show_default=True)
-@click.option(
-    "--preset", type=click.Choice(PRESETS), default="default", show_default=True, help="paper: as published in 2011."
-)
+@click.option("--method", type=MethodName(), default="slicewise", show_default=True)
+@click.option("--preset", default="default", show_default=True, metavar="NAME", help="paper: as published in 2011.")
 @click.option("--params", type=_PATH, metavar="JSON", help="File with options of the method: {name: value, ...}.")
 @click.option(
     "--prior", "learned", type=_PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate."
@@ -202,6 +201,7 @@ def design(
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
+    check_asked(method, preset)
     options, between = _options(method, params), _planes(planes)
     options |= {} if learned is None else {"prior": str(learned)}
     if out.resolve() == scan.resolve():

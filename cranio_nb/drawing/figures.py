@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from ..mesh import Mesh
-from ..methods.slicewise import SlicedDesign, SliceResult
+from ..methods.slicewise.slices import SlicedDesign, SliceResult
 from ..stages import feature_extraction
 from ..vault import slicing
 from ..volume import Volume

@@ -27,7 +27,7 @@ from ..evaluation.paper_tables import (
     telling_slices,
 )
 from ..implant.workshop import implant_data
-from ..methods.slicewise import SlicedDesign, SliceResult
+from ..methods.slicewise.slices import SlicedDesign, SliceResult
 from ..opening import Opening
 from ..pipeline.run import RunResult, TruthCheck, parameters_used
 from ..prosthesis import INNER, OUTER, DistanceStats
@@ -152,11 +152,12 @@ def _directions(result: RunResult) -> int:
 
 def _slice_caption(title: str, s: SliceResult) -> str:
     head = title[0].upper() + title[1:]
-    if s.status != "balloon":
+    inflation = s.inflation
+    if inflation is None:
         return f"{head}: {s.status} ({s.reason.rstrip('.')})."
     angles = "; ".join(
-        f"{side}: θ₀ {s.values['theta0'][i]:.0f}°, θ₁ {s.values['theta1'][i]:.0f}°, {_steps(s.values['n_iter'][i])}"
-        + ("" if s.values["converged"][i] else ", not at rest")
+        f"{side}: θ₀ {inflation.theta0_deg[i]:.0f}°, θ₁ {inflation.theta1_deg[i]:.0f}°, {_steps(inflation.n_iter[i])}"
+        + ("" if inflation.converged[i] else ", not at rest")
         for i, side in enumerate(("outer", "inner"))
     )
     return f"{head}: {angles}."

@@ -41,7 +41,7 @@ import numpy as np
 from cranio_nb.drawing import scene3d, shading
 from cranio_nb.evaluation import scores
 from cranio_nb.geometry.mesh_check import check_mesh
-from cranio_nb.methods import slicewise
+from cranio_nb.methods.design import design
 from cranio_nb.stages import feature_extraction, segmentation
 from cranio_nb.teaching import check, classroom, widgets
 from cranio_nb.vault import opening_search
@@ -140,7 +140,7 @@ player.set(preset="tangent pressure: k from the ends")
 # `design` does this for the whole hole, fills between the curves, and wraps the filled voxels in triangles.
 
 # %% tags=["nbval-check-output"]
-prosthesis = slicewise.design(bone, openings)
+prosthesis = design(bone, openings)
 report = check_mesh(prosthesis.mesh)
 print(
     f"{report.n_faces} triangles, {report.volume / 1000:.1f} cm3, can be built: {report.sound}"

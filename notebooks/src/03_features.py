@@ -223,7 +223,7 @@ for skip, reach in settings:
 # <summary>Answer</summary>
 #
 # No: 10 px of 0.9 mm are 9 mm, 10 px of 0.45 mm are 4.5 mm. A length of the patient should be given in mm. The
-# sliders above do so, and so do the options of `slicewise.design`.
+# sliders above do so, and so do the options of the method `slicewise`.
 #
 # </details>
 #

@@ -27,7 +27,7 @@ from scipy import ndimage
 from skimage.morphology import convex_hull_image
 
 from cranio_nb.evaluation import paper_tables, scores
-from cranio_nb.methods import slicewise
+from cranio_nb.methods.design import design
 from cranio_nb.stages import prosthesis_volume, segmentation
 from cranio_nb.teaching import check, classroom, widgets
 from cranio_nb.vault import opening_search
@@ -58,7 +58,7 @@ opening = openings[0]
 # other: crumbs that touch only one of them are dropped.
 
 # %% tags=["nbval-check-output"]
-paper = slicewise.design(bone, openings, **slicewise.paper_options(bone))
+paper = design(bone, openings, preset="paper")
 made = paper.working[0].slices  # the slices of the first hole
 bridged = [s for s in made if s.status == "balloon"]
 one = bridged[len(bridged) // 2]
@@ -184,10 +184,10 @@ widgets.patch(bone, opening)
 # fit, on the same axial slices? And will one fan, across the short side, be enough?
 
 # %% tags=["nbval-check-output"]
-tries = {"axial, paper's k": slicewise.paper_options(bone), "axial, own k": {"axial": True}}
+tries = {"axial, paper's k": {"preset": "paper"}, "axial, own k": {"axial": True}}
 tries |= {f"fans, {n} direction(s)": {"directions": n} for n in (1, 2, 6)}
 for name, options in tries.items():
-    designed = slicewise.design(bone, openings, **options)
+    designed = design(bone, openings, **options)
     if case.truth is not None:
         s = scores.score(designed.patch, case.truth, bone)
         print(f"{name:20} Dice {s.dice:.3f}, HD95 {s.hd95:.2f} mm, mean {s.assd:.2f} mm")
@@ -212,7 +212,7 @@ for name, options in tries.items():
 # | tangents | one direction | six directions |
 # |---|---|---|
 # | each slice alone, radius without a bend | 0.77 / 1.10, 0.869 | 0.49 / 0.71, 0.919 |
-# | shared between slices (`coupling`) | 0.76 / 1.04, 0.872 | 0.48 / 0.69, 0.922 |
+# | shared between slices (`coupling_mm`) | 0.76 / 1.04, 0.872 | 0.48 / 0.69, 0.922 |
 # | with a bend | 0.86 / 1.20, 0.865 | 0.48 / 0.69, 0.921 |
 # | shared, with a bend (our default) | 0.73 / 1.00, 0.882 | 0.47 / 0.67, 0.923 |
 # | default, bend only where it halves the misfit | 0.72 / 0.95, 0.883 | 0.47 / 0.66, 0.924 |

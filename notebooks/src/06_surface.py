@@ -32,7 +32,7 @@ from cranio_nb.drawing import figures
 from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.implant.workshop import workshop
 from cranio_nb.mesh import Mesh
-from cranio_nb.methods import slicewise
+from cranio_nb.methods.design import design
 from cranio_nb.output import files
 from cranio_nb.prosthesis import OUTER
 from cranio_nb.stages import segmentation, surface_reconstruction
@@ -54,7 +54,7 @@ from cranio_nb.vault import opening_search
 case = classroom.load("class")
 bone = segmentation.segment(case.ct)
 openings = opening_search.find_openings(bone)
-patch = slicewise.design(bone, openings).patch
+patch = design(bone, openings).patch
 print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 
 # %% [markdown]

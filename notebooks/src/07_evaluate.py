@@ -27,7 +27,7 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from cranio_nb.evaluation import paper_tables, scores
-from cranio_nb.methods import slicewise
+from cranio_nb.methods.design import design
 from cranio_nb.pipeline.run import check_truth
 from cranio_nb.prosthesis import INNER, OUTER
 from cranio_nb.stages import segmentation
@@ -47,7 +47,7 @@ from cranio_nb.volume import Volume
 case = classroom.load("class", needs_truth=True)
 bone, truth = segmentation.segment(case.ct), case.truth
 openings = opening_search.find_openings(bone)
-made = slicewise.design(bone, openings)
+made = design(bone, openings)
 seen = check_truth(made, truth, bone, openings[0])
 
 # %% [markdown]

@@ -29,8 +29,7 @@ from skimage.morphology import convex_hull_image
 
 from cranio_nb.evaluation import against_truth as measure
 from cranio_nb.evaluation import paper_tables, scores
-from cranio_nb.methods import hull, reflection, slicewise
-from cranio_nb.methods.you.method import method as you
+from cranio_nb.methods.design import design
 from cranio_nb.stages import segmentation
 from cranio_nb.teaching import check, classroom, widgets
 from cranio_nb.vault import opening_search, symmetry
@@ -86,9 +85,9 @@ classroom.picture(
 # </details>
 
 # %% tags=["nbval-check-output"]
-sheet = hull.design(bone, openings)
+sheet = design(bone, openings, method="hull")
 burr = classroom.load("class", defect="burr_hole", needs_truth=True)
-small = hull.design(segmentation.segment(burr.ct))
+small = design(segmentation.segment(burr.ct), method="hull")
 print(f"this hole: Dice {scores.dice(sheet.patch, case.truth):.3f}")
 print(f"burr hole: Dice {scores.dice(small.patch, burr.truth):.3f}")
 
@@ -146,7 +145,7 @@ lopsided = bone.with_voxels(bone.voxels[:, :, np.rint(source).astype(int)])
 copies = {}
 for name, skull in {"our head": bone, "lopsided": lopsided}.items():
     for fit in (False, True):
-        made = copies[name, fit] = reflection.design(skull, openings, fit_rim=fit)
+        made = copies[name, fit] = design(skull, openings, method="reflection", fit_rim=fit)
         dice = scores.dice(made.patch, case.truth)
         print(f"{name}, fit_rim {fit!s:5}: Dice {dice:.3f}")
 
@@ -204,7 +203,7 @@ film
 # average (exercise 8.2). That is the **planar bias**. Here:
 
 # %% tags=["nbval-check-output"]
-flat = you.design(bone, openings)
+flat = design(bone, openings, method="you")
 columns = {"the paper's You": paper_tables.PAPER_DISTANCES["You et al."]}
 columns["here"] = measure.table3(flat, true, bone)["outer"]
 for name, row in columns.items():
@@ -223,7 +222,7 @@ for name, row in columns.items():
 
 # %% tags=["nbval-check-output"]
 rivals = {"hull": sheet, "You et al.": flat, "reflection": copies["our head", True]}
-rivals["slice method"] = slicewise.design(bone, openings)
+rivals["slice method"] = design(bone, openings)
 print("                outer mean   max   inner mean   max    Dice  HD95 (mm)")
 for name, made in rivals.items():
     seen = measure.against(made, true, bone)
@@ -265,7 +264,7 @@ classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone a
 
 # %% tags=["raises-exception"]
 frontal = segmentation.segment(classroom.load("tiny", defect="frontal").ct)
-reflection.design(frontal)
+design(frontal, method="reflection")
 
 # %% [markdown]
 # ## Exercises
@@ -335,9 +334,9 @@ check.exercise("8.3", lid)
 #
 # | paper | code | unit |
 # |---|---|---|
-# | convex hull, Fig. 6 | `hull.design`, `hull.paper_options` | |
-# | reflection | `symmetry.find`, `reflection.design` | degrees, mm |
-# | You et al. | `tetrahedra.extract`, `you.design` | mm |
+# | convex hull, Fig. 6 | `design(..., method="hull")` | |
+# | reflection | `symmetry.find`, `design(..., method="reflection")` | degrees, mm |
+# | You et al. | `tetrahedra.extract`, `design(..., method="you")` | mm |
 # | Table 3 | `truth.table3`, `tables.PAPER_DISTANCES` | voxels |
 #
 # **Further reading.** Chen and Medioni, *Object modelling by registration of multiple range images*, Image and Vision

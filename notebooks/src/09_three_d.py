@@ -29,8 +29,7 @@ import numpy as np
 from cranio_nb.drawing import figures
 from cranio_nb.evaluation import against_truth as measure
 from cranio_nb.evaluation import scores
-from cranio_nb.methods import slicewise, thin_plate
-from cranio_nb.methods.dnurbs.method import method as dnurbs
+from cranio_nb.methods.design import design
 from cranio_nb.stages import segmentation
 from cranio_nb.teaching import check, classroom, widgets
 from cranio_nb.vault import opening_search, radius_map
@@ -40,12 +39,12 @@ from cranio_nb.vault import opening_search, radius_map
 #
 # | method | name | meaning | unit | here |
 # |---|---|---|---|---|
-# | thin plate | `second`, a | length over which the second order smooths | mm | 1.3 |
-# | thin plate | `third`, b | the same for the third order | mm | 1.8 |
-# | thin plate | `mirror`, c | the same towards the other side's curvature | mm | 1.6 |
+# | thin plate | `second_mm`, a | length over which the second order smooths | mm | 1.3 |
+# | thin plate | `third_mm`, b | the same for the third order | mm | 1.8 |
+# | thin plate | `mirror_mm`, c | the same towards the other side's curvature | mm | 1.6 |
 # | thin plate | `prior` | a file of `cranio-nb prior learn` | | none |
-# | D-NURBS | `wavelength` | ripples of this length are halved | mm | 20 |
-# | D-NURBS | `span` | between the knots | mm | 8 |
+# | D-NURBS | `wavelength_mm` | ripples of this length are halved | mm | 20 |
+# | D-NURBS | `span_mm` | between the knots | mm | 8 |
 #
 # *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, as in lesson 07. The
 # numbers in the answers are those of `"class"`.
@@ -242,7 +241,7 @@ for moved in ({"step": 1}, {"step": 40}, {"mass": 3}, {"mass": 1, "wavelength": 
 # At rest p' = p'' = 0, and what is left is K p = f: neither mass nor friction is in it. Three times the mass takes more
 # steps to the same energy. The stiffer sheet comes to rest elsewhere, 2.08 mm too high, as it keeps more of its sphere
 # than the springs would like. And the control points lie off the sheet, on the outer side of a dome: only those at the
-# corners are on it. This sheet has few springs and wide spans, for speed; `dnurbs.design` has more of both, and as its
+# corners are on it. This sheet has few springs and wide spans, for speed; the method `dnurbs` has more of both, and as its
 # weights are frozen, it goes to rest by one solve instead of by steps.
 #
 # </details>
@@ -255,11 +254,14 @@ for moved in ({"step": 1}, {"step": 40}, {"mass": 3}, {"mass": 1, "wavelength": 
 
 # %%
 wide = classroom.load("class", defect="large", needs_truth=True)
-methods = {"slice method": slicewise, "thin plate": thin_plate, "D-NURBS": dnurbs}
-made = {name: method.design(bone, openings) for name, method in methods.items()}
+methods = {"slice method": "slicewise", "thin plate": "thin-plate", "D-NURBS": "dnurbs"}
+made = {name: design(bone, openings, method=method) for name, method in methods.items()}
 skull = segmentation.segment(wide.ct)
 largest = opening_search.find_openings(skull)
-over = {name: method.design(skull, largest, smooth=False) for name, method in methods.items()}
+over = {
+    name: design(skull, largest, method=method, smooth=False)
+    for name, method in methods.items()
+}
 
 # %% tags=["nbval-check-output"]
 print("              outer mean   max   inner mean   max    Dice    large: Dice  HD95 (mm)")
@@ -394,8 +396,8 @@ classroom.picture(fig, alt, f"w = 0.71: radius {radius.min():.3f} to {radius.max
 # | paper | code | unit |
 # |---|---|---|
 # | the vault around the hole | `chart.look`, `RadialChart` | mm per ray |
-# | 3D deformable model | `thin_plate.bend`, `thin_plate.design` | mm |
-# | D-NURBS | `sheet.Sheet`, `sheet_motion.relax`, `dnurbs.design` | mm |
+# | 3D deformable model | `thin_plate.bend`, `design(..., method="thin-plate")` | mm |
+# | D-NURBS | `sheet.Sheet`, `sheet_motion.relax`, `design(..., method="dnurbs")` | mm |
 # | Table 3 | `truth.table3` | voxels |
 #
 # **Further reading.** Carr, Fright and Beatson, *Surface interpolation with radial basis functions for medical imaging*,

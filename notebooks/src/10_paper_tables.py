@@ -33,9 +33,7 @@ from cranio_nb.drawing import figures
 from cranio_nb.drawing.shading import Solid, render, skull_surface
 from cranio_nb.evaluation import against_truth as measure
 from cranio_nb.evaluation import paper_tables, scores
-from cranio_nb.methods import reflection, slicewise, thin_plate
-from cranio_nb.methods.dnurbs.method import method as dnurbs
-from cranio_nb.methods.you.method import method as you
+from cranio_nb.methods.design import design
 from cranio_nb.prosthesis import OUTER
 from cranio_nb.stages import prosthesis_volume, segmentation
 from cranio_nb.teaching import check, classroom, widgets
@@ -60,8 +58,8 @@ case = classroom.load("class", needs_truth=True)
 bone, px = segmentation.segment(case.ct), case.px
 openings = opening_search.find_openings(bone)
 first = max(openings[0].planes[0] - 2, 0)  # plane of the first slice: two below the hole
-paper = slicewise.design(bone, openings, **slicewise.paper_options(bone))
-ours = slicewise.design(bone, openings)
+paper = design(bone, openings, preset="paper")
+ours = design(bone, openings)
 
 # %% [markdown]
 # ## Tables 1 and 2: angles and steps
@@ -117,16 +115,16 @@ for i, (side, rows) in enumerate(paper_tables.PAPER_BALLOONS.items()):
 # second is what its last paragraph wishes for.
 
 # %%
-own_k = slicewise.paper_options(bone) | {"pressure": None}
+own_k = {"preset": "paper", "pressure_mm": None}
 designs = {
     "paper's preset": paper,
-    "its k from ends": slicewise.design(bone, openings, **own_k),
+    "its k from ends": design(bone, openings, **own_k),
 }
-designs |= {"default, axial": slicewise.design(bone, openings, axial=True), "default": ours}
-designs["reflection"] = reflection.design(bone, openings, fit_rim=False)
-designs["You et al."] = you.design(bone, openings)
-designs["thin-plate"] = thin_plate.design(bone, openings)
-designs["dnurbs"] = dnurbs.design(bone, openings)
+designs |= {"default, axial": design(bone, openings, axial=True), "default": ours}
+designs["reflection"] = design(bone, openings, method="reflection", fit_rim=False)
+designs["You et al."] = design(bone, openings, method="you")
+designs["thin-plate"] = design(bone, openings, method="thin-plate")
+designs["dnurbs"] = design(bone, openings, method="dnurbs")
 
 # %%
 true = measure.true_prosthesis(case.truth, bone, openings[0])

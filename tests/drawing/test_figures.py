@@ -11,7 +11,7 @@ from cranio_nb.curves import GapEnds
 from cranio_nb.drawing import figures, shading
 from cranio_nb.drawing.shading import Solid
 from cranio_nb.mesh import Mesh
-from cranio_nb.methods.slicewise import SlicedDesign, SliceResult
+from cranio_nb.methods.slicewise.slices import SlicedDesign, SliceResult
 from cranio_nb.opening import Opening
 from cranio_nb.vault import slicing
 from cranio_nb.volume import Volume

@@ -110,7 +110,9 @@ def plate_of(scene: Scene, second: float, third: float, mirror: float) -> Array:
     """Outer radii of the plate in the hole and beside it, shape (M, M), mm; nan elsewhere."""
     vault = scene.vault
     like = scene.mirrored
-    return thin_plate.bend(vault.outer, vault.hole, vault.mm, like=like, second=second, third=third, likeness=mirror)
+    return thin_plate.bend(
+        vault.outer, vault.hole, vault.mm, like=like, second_mm=second, third_mm=third, mirror_mm=mirror
+    )
 
 
 def _plate_view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
@@ -221,7 +223,7 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
 
 def relaxing(vault: RadialChart, wavelength: float, mass: float, damping: float) -> Way:
     """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps."""
-    setting = dnurbs.fit(vault, wavelength=wavelength, tension=0.0, span=_SPAN).settings[0]
+    setting = dnurbs.fit(vault, wavelength_mm=wavelength, tension_mm2=0.0, span_mm=_SPAN).settings[0]
     dynamics = Dynamics(mass=mass, damping=damping)
     deep = replace(setting.natural, control=setting.natural.control * _DEEP)
     motions = [sheet_motion.start(deep, setting, dynamics)]

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,8 @@ from scipy import ndimage
 
 from ...drawing.canvas import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, tinted
 from ...drawing.canvas_axes import Chart
-from ...methods import slicewise
+from ...methods.design import design
+from ...methods.slicewise.slices import SliceResult
 from ...opening import Opening
 from ...stages import prosthesis_volume
 from ...volume import Volume
@@ -47,7 +49,7 @@ class Stack:
 
     bone: Volume
     first: int
-    slices: tuple[slicewise.SliceResult, ...]
+    slices: tuple[SliceResult, ...]
     patches: NDArray[np.bool_]
 
     @cached_property
@@ -87,10 +89,8 @@ def patch(bone: Volume, opening: Opening) -> Panel:
 
 def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
     """Curves and patches of all slices of an opening, axial as in the paper."""
-    options = slicewise.paper_options(bone)
-    if pressure == PRESSURES[0]:
-        options["pressure"] = None
-    made = slicewise.design(bone, [opening], **options)
+    options: dict[str, Any] = {"pressure_mm": None} if pressure == PRESSURES[0] else {}
+    made = design(bone, [opening], preset="paper", **options)
     (working,) = made.working
     first = round(float(bone.to_voxel(working.frames[0, 0])[0]))
     slices = bone.voxels[first : first + len(working.slices)]
@@ -101,7 +101,7 @@ def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
 
 
 def _filled(
-    result: slicewise.SliceResult, bone: NDArray[np.bool_], near: NDArray[np.bool_], min_area: float
+    result: SliceResult, bone: NDArray[np.bool_], near: NDArray[np.bool_], min_area: float
 ) -> NDArray[np.bool_]:
     if result.status == "hull":
         return prosthesis_volume.partial_loss(bone, min_area=min_area, region=near)

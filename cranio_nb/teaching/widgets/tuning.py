@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...drawing.canvas import BLACK, BLUE, GREY, Canvas
-from ...methods import slicewise
+from ...methods.design import design
 from ...pipeline import run
 from ...pipeline.run import TruthCheck
 from ...prosthesis import Prosthesis
@@ -43,11 +43,11 @@ _MEASURES = (
 
 
 class Tuner(Panel):
-    """A panel over the parameters of `methods.slicewise.design`."""
+    """A panel over the parameters of the method `slicewise`."""
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The options that the controls stand for, as `cranio-nb design --params` and `slicewise.design` take them."""
+        """The options that the controls stand for, as `cranio-nb design --params` and `design` take them."""
         return options_of(**self.values)
 
     def save(self, path: str | Path = FILE) -> Path:
@@ -75,7 +75,7 @@ def tuner(case: Case) -> Tuner:
         Slider("reach", "reach: fitted after that (mm)", 4, 30, 10, 0.5),
         Slider("coupling", "tangents shared over (mm)", 0, 10, 4, 0.5),
         Switch("own", "set k by hand (else from the end tangents)", False),
-        Slider("pressure", "k: pressure (per index\N{SUPERSCRIPT TWO})", -0.1, 1.0, 0.062, 0.002),
+        Slider("pressure", "k: pressure (mm per index\N{SUPERSCRIPT TWO})", -0.1, 1.0, 0.062, 0.002),
         Slider("n_snaxels", "snaxels, N + 1", 11, 81, 41, 2),
         Slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1, 5, 1, 0.1),
         Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, 5, 1, 0.1),
@@ -108,14 +108,14 @@ def options_of(
     rigidity: float,
     smooth: bool,
 ) -> dict[str, Any]:
-    """Options of `slicewise.design` for the values of the controls."""
+    """Options of the method `slicewise` for the values of the controls."""
     return {
         "axial": slices == SLICES[0],
         "directions": directions,
-        "skip": skip,
-        "reach": reach,
-        "coupling": coupling,
-        "pressure": pressure if own else None,
+        "skip_mm": skip,
+        "reach_mm": reach,
+        "coupling_mm": coupling,
+        "pressure_mm": pressure if own else None,
         "n_snaxels": n_snaxels,
         "tension": tension,
         "rigidity": rigidity,
@@ -128,7 +128,7 @@ Measured = tuple[tuple[float, ...], DistanceMap]
 
 def _measured(bone: Volume, truth: Volume, openings: tuple[Any, ...], options: dict[str, Any]) -> Measured:
     """Measures of one design in the order of `_MEASURES`, and its map of distances."""
-    made = slicewise.design(bone, openings, **options)
+    made = design(bone, openings, **options)
     check = run.check_truth(made, truth, bone, openings[0])
     return measures(made, check), distance_map(made, check.prosthesis, 0)
 

@@ -13,8 +13,8 @@ from cranio_nb.drawing.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_
 from cranio_nb.drawing.described import described
 from cranio_nb.errors import InputRefused
 from cranio_nb.evaluation import scores
-from cranio_nb.methods import slicewise
 from cranio_nb.methods.catalogue import check_options, default_options
+from cranio_nb.methods.design import design as design_with
 from cranio_nb.methods.you import method as you
 from cranio_nb.pipeline import run
 from cranio_nb.prosthesis import INNER, OUTER
@@ -106,7 +106,7 @@ def make_all(ct, skull, opened, arch, made, true):
 
 @pytest.fixture(scope="session")
 def design(skull, openings):
-    return slicewise.design(skull(), openings(), directions=1)
+    return design_with(skull(), openings(), directions=1)
 
 
 @pytest.fixture(scope="session")
@@ -269,7 +269,7 @@ def test_the_end_pressure_leaves_k_without_effect(live, arch):
 
 def test_the_patch_of_a_slice_is_what_fill_and_hull_say(static, skull, openings):
     stack = widgets.stack.fill_slices(skull(), openings()[0], widgets.stack.PRESSURES[1])
-    made = slicewise.design(skull(), openings(), **slicewise.paper_options(skull())).patch.voxels
+    made = design_with(skull(), openings(), preset="paper").patch.voxels
     own = stack.patches & ~made[stack.first : stack.first + len(stack.slices)]
     assert own.sum() <= 0.02 * stack.patches.sum()  # all but loose crumbs
     panel = widgets.patch(skull(), openings()[0]).set(pressure=widgets.stack.PRESSURES[1])
@@ -374,10 +374,10 @@ def test_the_tuner_hands_its_parameters_to_the_design_command(static, phantom, t
     panel = widgets.tuner(phantom()).set(slices=tuning.SLICES[0], reach=20.0, own=True, pressure=0.5)
     check_options("slicewise", panel.parameters)
     assert json.loads(panel.save(tmp_path / "p.json").read_text()) == panel.parameters
-    assert panel.parameters["axial"] and panel.parameters["pressure"] == 0.5
+    assert panel.parameters["axial"] and panel.parameters["pressure_mm"] == 0.5
     case = phantom()
     bone = Volume(case.bone, case.affine)
-    made = slicewise.design(bone, **panel.parameters)
+    made = design_with(bone, **panel.parameters)
     dice = scores.dice(made.patch, bone.with_voxels(case.implant))
     assert panel.view.line.startswith(f"DSC {dice:.3f}")
 
