@@ -11,6 +11,8 @@ from dataclasses import dataclass, field, replace
 from os import PathLike
 from typing import Any
 
+import numpy as np
+
 from ..errors import InputRefused, NoOpening
 from ..evaluation.against_truth import TruthCheck, check_truth
 from ..evaluation.paper_tables import OpeningSize, count_statuses, measure_opening, not_converged
@@ -27,6 +29,7 @@ from ..volume import Volume, same_grid
 
 Progress = Callable[[str, float], None]
 _THIN = 2.0  # mm: a wall that workshops begin to warn about
+_BESIDE = 20.0  # mm beside an opening within which a patch may reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,9 +237,25 @@ def design_inside(
     options: dict[str, Any],
     progress: Progress | None = None,
 ) -> Prosthesis:
-    """`methods.design`, refused where the prosthesis reaches the edge of the image (``OpeningLeavesImage``)."""
+    """`methods.design`, refused where the prosthesis reaches the edge of the image.
+
+    Parameters
+    ----------
+    bone, openings, method, preset, options, progress
+        As for `methods.design.design`.
+
+    Returns
+    -------
+    Prosthesis
+
+    Raises
+    ------
+    InputRefused
+        ``OpeningLeavesImage`` where the opening lies beside that edge, ``PatchLeavesOpening`` where the patch runs
+        away from the opening; and what `design` refuses.
+    """
     made = design(bone, openings, method=method, preset=preset, progress=progress, **options)
-    _check_room([] if made.patch is None else [made.patch], "The prosthesis")
+    _check_patch(made, openings)
     return made
 
 
@@ -265,9 +284,39 @@ def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...])
     return tuple(found)
 
 
+def _check_patch(made: Prosthesis, openings: tuple[Opening, ...]) -> None:
+    """Refuse a patch that touches the border of its grid, and say whether the image or the method is to blame."""
+    if made.patch is None or not _touches_border(made.patch):
+        return
+    away = _farthest(made.patch, openings)
+    if away > _BESIDE:
+        message = (
+            f"The method {made.method} did not bridge the opening: in places its patch runs up to {away:.0f} mm away"
+            " from it, to the edge of the image."
+        )
+        raise InputRefused("PatchLeavesOpening", message, "Use another method or preset.")
+    _check_room([made.patch], "The prosthesis")
+
+
+def _farthest(patch: Volume, openings: tuple[Opening, ...]) -> float:
+    """Largest distance of a patch's voxels from the boxes around the openings, mm."""
+    index = np.argwhere(patch.voxels)
+    distances = []
+    for opening in openings:
+        held = np.argwhere(opening.sheet.voxels)
+        beyond = np.maximum(np.maximum(held.min(axis=0) - index, index - held.max(axis=0)), 0)
+        distances.append(np.linalg.norm(beyond * patch.spacing, axis=1))
+    return float(np.min(distances, axis=0).max())
+
+
+def _touches_border(mask: Volume) -> bool:
+    """Whether a mask reaches the first or the last plane, row or column of its grid."""
+    return any(mask.voxels.take(end, axis).any() for axis in range(3) for end in (0, -1))
+
+
 def _check_room(masks: list[Volume], what: str) -> None:
     """Refuse what touches the border of its grid: it may go on outside."""
-    if any(mask.voxels.take(end, axis).any() for mask in masks for axis in range(3) for end in (0, -1)):
+    if any(_touches_border(mask) for mask in masks):
         raise InputRefused(
             "OpeningLeavesImage",
             f"{what} reaches the edge of the image, where it would be cut off.",

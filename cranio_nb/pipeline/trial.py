@@ -192,6 +192,6 @@ def _child(folder: str, affine: Any, centres: list[Any], contender: Contender, m
 
 def _status(error: CranioError) -> str:
     # the openings lie inside the image, as was seen before; a patch that does not is the method's failure
-    if isinstance(error, NoOpening) or error.code == "OpeningLeavesImage":
+    if isinstance(error, NoOpening) or error.code in ("OpeningLeavesImage", "PatchLeavesOpening"):
         return "no patch"
     return "refused" if isinstance(error, InputRefused) else "broken"

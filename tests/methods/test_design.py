@@ -41,7 +41,7 @@ class Method:
 METHODS = {
     "slicewise": Method("slicewise", (0.93, 0.91, 0.88), mirror=0.95),
     "thin-plate": Method("thin-plate", (0.93, 0.91, 0.90), mirror=0.95),
-    # its fixed pressure and 10 px of `skip` are made for other pixels; thinning is not symmetric
+    # its fixed pressure is made for other pixels; thinning is not symmetric
     "paper": Method(
         "slicewise",
         (0.80, 0.24, 0.45),

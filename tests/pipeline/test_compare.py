@@ -17,14 +17,13 @@ from cranio_nb.cli.main import main
 from cranio_nb.drawing import figures
 from cranio_nb.errors import CannotWrite, InputRefused, NoOpening
 from cranio_nb.methods import catalogue
+from cranio_nb.methods.piece import Piece
 from cranio_nb.output import comparison_page
 from cranio_nb.output.files import write_nifti
 from cranio_nb.output.staging import staged
-from cranio_nb.pipeline import compare, trial
+from cranio_nb.pipeline import compare
 from cranio_nb.pipeline.run import prepare
-from cranio_nb.pipeline.trial import Contender, attempt, attempt_apart, contenders
-from cranio_nb.prosthesis import Prosthesis
-from cranio_nb.stages.surface_reconstruction import extract, face_sides
+from cranio_nb.pipeline.trial import attempt, contenders
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -32,25 +31,21 @@ from data_synth import phantom_case
 def from_truth(grow):
     """A method that knows the answer, and moves it `grow` planes up the head."""
 
-    def design(bone, openings=None, *, progress=None):
-        case = phantom_case("tiny", "round", 0)
-        patch = np.roll(case.implant, grow, axis=0) & ~bone.voxels
-        mesh = extract(bone.with_voxels(patch))
-        sides = face_sides(mesh, bone, openings[0].head_centre)
-        return Prosthesis(mesh, sides, bone.with_voxels(patch), "stand-in", {}, {"version": "0", "seconds": 1.0})
+    def pieces(bone, openings):
+        yield Piece(np.roll(phantom_case("tiny", "round", 0).implant, grow, axis=0))
 
-    return design
+    return pieces
 
 
-def refusing(bone, openings=None, *, progress=None):
+def refusing(bone, openings):
     raise InputRefused("CrossesMiddle", "The other side <is> open, too.", "Try another.")
 
 
-def finding_nothing(bone, openings=None, *, progress=None):
+def finding_nothing(bone, openings):
     raise NoOpening("NothingBridged", "Nothing was bridged.")
 
 
-def faulty(bone, openings=None, *, progress=None):
+def faulty(bone, openings):
     raise IndexError("a secret")
 
 
@@ -67,9 +62,8 @@ STAND_INS = {
 def only_stand_ins():
     """Stand-ins in the catalogue, as if they were all the methods there are."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(catalogue, "import_module", lambda name: types.SimpleNamespace(design=STAND_INS[name]))
-        patch.setattr(catalogue, "METHODS", names := {name: name for name in STAND_INS})
-        patch.setattr(trial, "METHODS", names)
+        patch.setattr(catalogue, "import_module", lambda name: types.SimpleNamespace(pieces=STAND_INS[name]))
+        patch.setattr(catalogue, "METHODS", {name: name for name in STAND_INS})
         yield
 
 
@@ -180,51 +174,6 @@ class TestComparison:
             case, contenders(["refusing", "faulty"]), attempt=attempt, progress=lambda *told_now: told.append(told_now)
         )
         assert told == [("refusing", 0.0), ("faulty", 0.5)]
-
-
-class TestContenders:
-    def test_by_name_once_each(self):
-        assert contenders(["slicewise:paper", "slicewise", "slicewise"]) == (
-            Contender("slicewise", "paper"),
-            Contender("slicewise"),
-        )
-        assert [c.name for c in contenders(["slicewise:paper"])] == ["slicewise:paper"]
-
-    def test_all_by_default_with_the_papers_preset_where_there_is_one(self):
-        names = [c.name for c in contenders()]
-        assert set(catalogue.METHODS) <= set(names) and "slicewise:paper" in names
-
-    @pytest.mark.parametrize("name", ["magic", "slicewise:best", ":paper"])
-    def test_unknown_names_are_refused(self, name):
-        with pytest.raises(InputRefused, match="There is no"):
-            contenders([name])
-
-
-def test_a_patch_that_runs_out_of_the_image_is_a_failure_and_no_refusal(case, monkeypatch):
-    def leaking(bone, openings=None, *, progress=None):
-        patch = np.zeros(bone.shape, bool)
-        patch[-1] = True
-        return Prosthesis(extract(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking")
-
-    monkeypatch.setitem(STAND_INS, "perfect", leaking)
-    with only_stand_ins():
-        assert attempt(case.bone, case.openings, Contender("perfect")).status == "no patch"
-
-
-class TestApart:
-    def test_is_the_same_design_and_does_not_count_what_this_process_holds(self, case):
-        here = attempt(case.bone, case.openings, Contender("slicewise", "paper"))
-        ballast = np.ones(50_000_000)  # 400 MB
-        apart = attempt_apart(case.bone, case.openings, Contender("slicewise", "paper"))
-        np.testing.assert_array_equal(apart.prosthesis.patch.voxels, here.prosthesis.patch.voxels)
-        np.testing.assert_array_equal(apart.prosthesis.mesh.vertices, here.prosthesis.mesh.vertices)
-        assert apart.prosthesis.parameters == here.prosthesis.parameters
-        assert 20 < apart.memory < trial.peak_memory() - 100 and ballast.nbytes == 4e8
-
-    def test_a_refusal_comes_back_as_a_sentence(self, case):
-        whole = case.bone.with_voxels(np.zeros(case.bone.shape, bool))
-        apart = attempt_apart(whole, case.openings, Contender("slicewise"))
-        assert apart.status != "done" and apart.prosthesis is None and apart.message.endswith(".")
 
 
 class TestPage:

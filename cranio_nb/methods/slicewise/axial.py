@@ -5,10 +5,13 @@ Frame: slice (row, col) px.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ...curves import Points
 from ...opening import Opening
 from ...stages import feature_extraction, prosthesis_volume
 from ...vault import slicing
@@ -45,7 +48,8 @@ def bridge(
     planes = range(max(first - _BESIDE, 0), min(end + _BESIDE, bone.shape[0]))
     at = slice(planes.start, planes.stop)
     ends = by_skeleton(bone.voxels[at], opening.sheet.voxels[at], skip_px=skip_px, reach_px=reach_px)
-    results = inflate.bridge(ends, bone.to_voxel(opening.head_centre)[1:], settings)
+    balloons = inflate.inflate(ends, bone.to_voxel(opening.head_centre)[1:], settings)
+    results = inflate.carry(within_image(balloons, (bone.shape[1], bone.shape[2])))
     px = float(bone.spacing[1:].mean())
     voxels = np.zeros(bone.shape, bool)
     voxels[at] = _filled(results, bone.voxels[at], opening.sheet.voxels[at], px)
@@ -81,6 +85,31 @@ def by_skeleton(
         except feature_extraction.SliceProblem as problem:
             results.append(SliceResult(plane, "skipped", problem.message))
     return results
+
+
+def within_image(slices: Sequence[SliceResult], shape: tuple[int, int]) -> list[SliceResult]:
+    """Take back balloons that ran out of the image: they bridge nothing.
+
+    It happens where an end's tangent stands upright on the chord: the start curve, eq. (3), has the slope tan(theta).
+
+    Parameters
+    ----------
+    slices : sequence of SliceResult
+    shape : tuple of int
+        Rows and columns of a slice.
+
+    Returns
+    -------
+    list of SliceResult
+        Those slices with the status "skipped".
+    """
+    reason = "its balloon ran out of the image"
+    return [SliceResult(s.plane, "skipped", reason) if _leaves(s.curves, shape) else s for s in slices]
+
+
+def _leaves(curves: Points, shape: tuple[int, int]) -> bool:
+    """Whether curves go beyond the pixels of a slice."""
+    return bool(((curves < -0.5) | (curves > np.array(shape) - 0.5)).any())
 
 
 def _filled(

@@ -59,7 +59,7 @@ def bridge(
         # curves of this direction, and their radii and weights on the map's own rays
         profile = slicing.profile(vault, fan)
         ends = by_rays(profile, skip_mm=skip_mm, reach_mm=reach_mm, coupling_mm=coupling_mm)
-        results = inflate.bridge(ends, np.zeros(2), settings)
+        results = inflate.carry(inflate.inflate(ends, np.zeros(2), settings))
         made.append(SlicedDesign(opening, fan.frames(vault.eye), 1.0, results))
         at = fan.locate(vault.directions[vault.hole])
         both = [_on_rays(results, boundary, profile) for boundary in (0, 1)]

@@ -16,8 +16,8 @@ from ...stages import deformable_model
 from .slices import Inflation, Settings, SliceResult
 
 
-def bridge(slices: Sequence[SliceResult], inside: NDArray[np.float64], settings: Settings) -> tuple[SliceResult, ...]:
-    """Inflate the balloons of all slices that have gap ends, and carry curves into those that have none.
+def inflate(slices: Sequence[SliceResult], inside: NDArray[np.float64], settings: Settings) -> list[SliceResult]:
+    """Relax the balloons of all slices together and put the curves into the results.
 
     Parameters
     ----------
@@ -26,21 +26,6 @@ def bridge(slices: Sequence[SliceResult], inside: NDArray[np.float64], settings:
     inside : ndarray, shape (2,)
         A point inside the head, slice (row, col).
     settings : Settings
-
-    Returns
-    -------
-    tuple of SliceResult
-    """
-    return carry(inflate(slices, inside, settings))
-
-
-def inflate(slices: Sequence[SliceResult], inside: NDArray[np.float64], settings: Settings) -> list[SliceResult]:
-    """Relax the balloons of all slices together and put the curves into the results.
-
-    Parameters
-    ----------
-    slices, inside, settings
-        As for `bridge`.
 
     Returns
     -------

@@ -21,7 +21,8 @@ from . import axial as axial_slices
 from . import fanned
 from .slices import Settings, SlicedDesign
 
-_PAPER_POINTS_MM = 4.5  # the paper's 10 boundary points, at its pixel of 0.45 mm
+_PAPER_SKIP_MM = 4.5  # the 10 boundary points that the paper leaves out, at its pixel of 0.45 mm
+_PAPER_REACH_PX = 10.0  # the paper gives none: as many points again, since a line through fewer of them is unsure
 
 
 def paper_options(bone: Volume) -> dict[str, Any]:
@@ -30,7 +31,7 @@ def paper_options(bone: Volume) -> dict[str, Any]:
     Parameters
     ----------
     bone : Volume
-        Its pixel size turns the paper's k, 0.062 px per index squared, into mm.
+        Its pixel size turns the paper's k, 0.062 px per index squared, and the points of the tangent line into mm.
 
     Returns
     -------
@@ -39,8 +40,8 @@ def paper_options(bone: Volume) -> dict[str, Any]:
     px = float(bone.spacing[1:].mean())
     return {
         "axial": True,
-        "skip_mm": _PAPER_POINTS_MM,
-        "reach_mm": _PAPER_POINTS_MM,
+        "skip_mm": _PAPER_SKIP_MM,
+        "reach_mm": _PAPER_REACH_PX * px,
         "pressure_mm": deformable_model.PAPER_PRESSURE * px,
         "n_snaxels": 21,
         "coupling_mm": 0.0,
@@ -98,8 +99,8 @@ def pieces(
     Yields
     ------
     Piece
-        The record's `slices` hold one entry per slice: status, reason, angles, lengths, iterations, convergence.
-        `working` holds a `SlicedDesign` per direction.
+        The record's `slices` hold one entry per slice: direction, plane, status, reason, angles, lengths, iterations,
+        convergence. `working` holds a `SlicedDesign` per direction.
     """
     unit = float(bone.spacing[1:].mean()) if axial else 1.0  # mm per unit of the slices
     pressure = None if pressure_mm is None else pressure_mm / unit
@@ -121,5 +122,5 @@ def pieces(
                 coupling_mm=coupling_mm,
                 settings=settings,
             )
-        slices = [s.record() for sliced in made for s in sliced.slices]
+        slices = [{"direction": i, **s.record()} for i, sliced in enumerate(made) for s in sliced.slices]
         yield Piece(prosthesis_volume.main_piece(voxels, opening.sheet.voxels), made, {"slices": slices})
