@@ -12,21 +12,22 @@ from data_synth import phantom_case
 
 @pytest.mark.parametrize("px", [0.45, 0.9, 1.75])
 def test_the_papers_preset_is_in_mm_on_every_grid(px):
-    """Its 10 boundary points are 4.5 mm at its pixel of 0.45 mm; its k is 0.062 of the scan's own pixels."""
+    """The 10 points it leaves out are 4.5 mm at its pixel of 0.45 mm; its k is 0.062 of the scan's own pixels."""
     bone = cn.Volume(np.zeros((2, 2, 2), bool), np.diag([1.3, px, px, 1.0]))
     options = preset_options("slicewise", "paper", bone)
-    assert (options["skip_mm"], options["reach_mm"]) == (4.5, 4.5)
+    assert options["skip_mm"] == 4.5 and options["reach_mm"] == pytest.approx(10 * px)
     assert options["pressure_mm"] / px == pytest.approx(0.062, rel=1e-12)
     assert (options["n_snaxels"], options["coupling_mm"], options["axial"], options["smooth"]) == (21, 0.0, True, False)
 
 
 def test_the_papers_preset_on_the_class_phantom():
-    case = phantom_case("class", "unilateral", 1)
+    """4.5 mm are half of 10 pixels here: the tangents lie nearer to the rim."""
+    case = phantom_case("class", "unilateral", 0)
     bone, truth = cn.Volume(case.bone, case.affine), cn.Volume(case.implant, case.affine)
     openings = find_openings(bone)
     now = scores.dice(cn.design(bone, openings, preset="paper").patch, truth)
-    in_pixels = scores.dice(cn.design(bone, openings, preset="paper", skip_mm=9.0, reach_mm=9.0).patch, truth)
-    assert now > in_pixels + 0.05
+    in_pixels = scores.dice(cn.design(bone, openings, preset="paper", skip_mm=9.0).patch, truth)
+    assert now == pytest.approx(0.71, abs=0.02) and now > in_pixels + 0.1
 
 
 @pytest.mark.parametrize("directions", [1, 3])
