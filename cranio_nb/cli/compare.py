@@ -53,7 +53,7 @@ def compare(
     from ..output.comparison_page import FILES, write_comparison
     from ..output.staging import check_folder, staged
     from ..pipeline.compare import compare as run_all
-    from ..pipeline.run import prepare
+    from ..pipeline.preparation import prepare
     from ..pipeline.trial import contenders
     from .console import progress_bar
 

@@ -53,7 +53,13 @@ class Contender:
 
     @property
     def name(self) -> str:
-        """``method``, or ``method:preset``."""
+        """The name in tables.
+
+        Returns
+        -------
+        str
+            ``method``, or ``method:preset``.
+        """
         return self.method if self.preset == "default" else f"{self.method}:{self.preset}"
 
 
@@ -99,6 +105,10 @@ def contenders(names: Sequence[str] = ()) -> tuple[Contender, ...]:
     names : sequence of str
         ``method`` or ``method:preset``. By default every method of the catalogue with each of its presets.
 
+    Returns
+    -------
+    tuple of Contender
+
     Raises
     ------
     InputRefused
@@ -115,7 +125,19 @@ def contenders(names: Sequence[str] = ()) -> tuple[Contender, ...]:
 
 
 def attempt(bone: Volume, openings: Sequence[Opening], contender: Contender) -> Trial:
-    """Let a contender design in this process; never raises for what a method does."""
+    """Let a contender design in this process; never raises for what a method does.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    openings : sequence of Opening
+    contender : Contender
+
+    Returns
+    -------
+    Trial
+    """
     find_method(contender.method)  # loaded before the clock runs
     made, status, code, message = None, "done", "", ""
     began, cpu = time.perf_counter(), time.process_time()
@@ -123,7 +145,7 @@ def attempt(bone: Volume, openings: Sequence[Opening], contender: Contender) -> 
         made = design_inside(bone, tuple(openings), contender.method, contender.preset, contender.options)
     except CranioError as error:
         status, code, message = _status(error), error.code, str(error)
-    except Exception as error:  # a rival's fault is a row of the table, not the end of it
+    except Exception as error:  # a method's fault is a row of the table, not the end of it
         code = type(error).__name__
         status, message = "broken", f"Something unforeseen went wrong in the method ({code})."
     spent = time.perf_counter() - began, time.process_time() - cpu
@@ -134,6 +156,15 @@ def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contende
     """`attempt` in a new process, which gets the masks as memory-mapped files and gives back what it made.
 
     A process that dies, e.g. for lack of memory, is a trial with the status "broken".
+
+    Parameters
+    ----------
+    bone, openings, contender
+        As for `attempt`.
+
+    Returns
+    -------
+    Trial
     """
     with tempfile.TemporaryDirectory(prefix="cranio-nb-") as folder:
         for name, volume in [("bone", bone), *((str(i), one.sheet) for i, one in enumerate(openings))]:
@@ -153,10 +184,15 @@ def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contende
 
 
 def peak_memory() -> float:
-    """Largest resident memory this process ever had, MB (10^6 bytes); nan where the system does not tell.
+    """Largest resident memory that this process ever had.
 
     That is Python with its libraries, the masks, and what the method needed on top of them: how much memory a machine
     must have free. A bare process with numpy, scipy and scikit-image holds about 100 MB.
+
+    Returns
+    -------
+    float
+        MB (10^6 bytes); nan where the system gives no number.
 
     Notes
     -----
@@ -191,7 +227,7 @@ def _child(folder: str, affine: Any, centres: list[Any], contender: Contender, m
 
 
 def _status(error: CranioError) -> str:
-    # the openings lie inside the image, as was seen before; a patch that does not is the method's failure
+    # the openings lie inside the image, as was checked before; a patch that does not is the method's failure
     if isinstance(error, NoOpening) or error.code in ("OpeningLeavesImage", "PatchLeavesOpening"):
         return "no patch"
     return "refused" if isinstance(error, InputRefused) else "broken"

@@ -22,7 +22,7 @@ from cranio_nb.output import comparison_page
 from cranio_nb.output.files import write_nifti
 from cranio_nb.output.staging import staged
 from cranio_nb.pipeline import compare
-from cranio_nb.pipeline.run import prepare
+from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.trial import attempt, contenders
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
