@@ -116,7 +116,12 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
 
 
 def remove_method(name: str) -> None:
-    """Take a method that `add_method` added out of the catalogue again; other names are left alone."""
+    """Take a method that `add_method` added out of the catalogue again; other names are left alone.
+
+    Parameters
+    ----------
+    name : str
+    """
     _added.pop(name, None)
 
 

@@ -1,4 +1,4 @@
-"""The simplest rival: a rubber sheet over the hole, the convex hull minus bone.
+"""The simplest method: the convex hull across the hole, minus bone.
 
 Bone mask in, pieces out. The 2011 paper (doi 10.5220/0003356601370142) uses the convex hull for slices of
 partial loss (its Fig. 6): hull minus bone, without small islands and without the biggest region, the cavity.
@@ -87,13 +87,13 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) ->
         yield Piece(voxels, (made,), record)
 
 
-def _in_space(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
+def _in_space(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening between the hulls of the vault's two surfaces."""
-    vault = radius_map.look(bone, one)
+    vault = radius_map.look(bone, opening)
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
     outer, inner = radius_map.thickened(vault, outer, inner)
     piece = radius_map.voxelise(vault, outer, inner, bone)
-    return HullDesign(one, vault, outer, inner), prosthesis_volume.solid_piece(piece, one.sheet, bone)
+    return HullDesign(opening, vault, outer, inner), prosthesis_volume.solid_piece(piece, opening.sheet, bone)
 
 
 def _hull_radius(vault: RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -117,22 +117,22 @@ def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[n
     return np.where((length > 1.0) & np.isfinite(length), length, np.nan)
 
 
-def _by_slices(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
+def _by_slices(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening, slice by slice along the planes of the scan."""
-    vault = radius_map.look(bone, one)
-    first, end = one.planes
+    vault = radius_map.look(bone, opening)
+    first, end = opening.planes
     px = float(bone.spacing[1:].mean())
-    near = ndimage.binary_dilation(one.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
+    near = ndimage.binary_dilation(opening.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
     cone = _cone(vault, bone)
     piece, entries = np.zeros(bone.shape, bool), []
     for plane in range(max(first - 2, 0), min(end + 2, bone.shape[0])):
-        hits = _first_bone(bone.voxels[plane], bone.to_voxel(one.head_centre)[1:])
+        hits = _first_bone(bone.voxels[plane], bone.to_voxel(opening.head_centre)[1:])
         rim = _in_hole(vault, bone.to_world(np.insert(hits, 0, plane, axis=1)))
         piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
         entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
     nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(one, vault, nothing, nothing, tuple(entries)), prosthesis_volume.solid_piece(
-        piece, one.sheet, bone
+    return HullDesign(opening, vault, nothing, nothing, tuple(entries)), prosthesis_volume.solid_piece(
+        piece, opening.sheet, bone
     )
 
 

@@ -71,7 +71,12 @@ class MirroredDesign:
 
     @property
     def lost(self) -> float:
-        """Part of the hole that has no mirror image, 0 to 1."""
+        """Part of the hole that has no mirror image, 0 to 1.
+
+        Returns
+        -------
+        float
+        """
         return float((self.own.hole & self.mirrored.hole).sum() / self.own.hole.sum())
 
 
@@ -145,9 +150,9 @@ def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
     )
 
 
-def _mirrored(bone: Volume, one: Opening, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
+def _mirrored(bone: Volume, opening: Opening, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
     """Radii of the mirror image across one hole, nan where it has none to give."""
-    own = radius_map.look(bone, one)
+    own = radius_map.look(bone, opening)
     image = radius_map.along(own, plane.mirrored(bone))
     known = np.isfinite(image.outer) & ~image.hole
     outer, inner = (extended(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
@@ -156,7 +161,7 @@ def _mirrored(bone: Volume, one: Opening, plane: SymmetryPlane, fit_rim: bool) -
         outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
         inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
         outer, inner = radius_map.thickened(own, outer, inner)
-    made = MirroredDesign(one, plane, own, image, outer, inner)
+    made = MirroredDesign(opening, plane, own, image, outer, inner)
     keep = own.hole
     if made.lost > _TOLERATED:
         keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / own.mm)))

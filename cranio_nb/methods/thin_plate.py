@@ -14,7 +14,7 @@ the plate is stiffer and heeds them less.
 
 The second order pulls smoothed bone towards spheres, the third towards quadrics, so that it carries the rim's
 curvature into the hole, but also the rim's bumps; both together err less than either. The last term asks the plate to
-be curved as the other side is; it knows nothing of where the other side lies, so an asymmetric head and a plane that
+be curved as the other side is; it does not depend on where the other side lies, so an asymmetric head and a plane that
 is a little off leave no step at the rim. It is left out where the mirrored skull lies more than 1.3 mm off the skull:
 then the plane is wrong, or the head has none. The lengths a, b, c (mm) say over what distance bone is smoothed; across
 the hole only their ratios matter. The weights w and v drop bone that does not belong to the vault, ridges, vessels and
@@ -77,7 +77,7 @@ class Plate:
     mirrored : tuple of ndarray, shape (M, M), or None
         Outer and inner radii of the other side of the skull; nan where it has none.
     expected : tuple of ndarray, shape (M, M), or None
-        Outer and inner radii that a prior lets expect.
+        Outer and inner radii that a prior predicts.
     """
 
     chart: RadialChart
@@ -109,12 +109,12 @@ def pieces(
     mirror_mm : float
         The length c over which bone is smoothed towards the curvature of the other side, mm; 0 for none.
     prior : str
-        File made by `cranio-nb prior learn`: the plate is then held to what intact skulls let expect. Empty for none.
+        File made by `cranio-nb prior learn`: the plate is then held to what intact skulls predict. Empty for none.
 
     Yields
     ------
     Piece
-        The record's `symmetry` describes the symmetry plane or says why there is none; the piece is empty where too
+        The record's `symmetry` describes the symmetry plane or why there is none; the piece is empty where too
         little bone is seen around the opening. `working` holds a `Plate`.
 
     Raises
@@ -231,10 +231,10 @@ def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_arra
     return sparse.csr_array((np.tile(stencil.ravel(), len(nodes)), (rows, nodes.ravel())), shape=shape)
 
 
-def _symmetry(bone: Volume, one: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
+def _symmetry(bone: Volume, opening: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
     """The symmetry plane, if there is one, and what to record of it."""
     try:
-        plane = symmetry.find(bone, one.head_centre)
+        plane = symmetry.find(bone, opening.head_centre)
     except InputRefused as refused:
         return None, {"unused": refused.message}
     if plane.residual > _LOPSIDED:
@@ -243,10 +243,10 @@ def _symmetry(bone: Volume, one: Opening) -> tuple[SymmetryPlane | None, dict[st
 
 
 def _plate(
-    bone: Volume, one: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
+    bone: Volume, opening: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
     """Both plates of one opening."""
-    vault = radius_map.look(bone, one)
+    vault = radius_map.look(bone, opening)
     mirrored = None if plane is None else _other_side(bone, vault, plane)
     expected = None if learned is None else _expected(bone, vault, learned)
     nodes = max(1, round(_NODES / vault.mm))
@@ -268,12 +268,13 @@ def _other_side(bone: Volume, vault: RadialChart, plane: SymmetryPlane) -> tuple
 
 
 def _expected(bone: Volume, vault: RadialChart, learned: Prior) -> tuple[Array, Array] | None:
-    """Outer and inner radii that a prior lets expect, continued where it does not reach; None where it never does."""
-    told = expect(learned, bone, vault)
-    if not (np.isfinite(told.outer) & vault.hole).any():
+    """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
+    predicted = expect(learned, bone, vault)
+    if not (np.isfinite(predicted.outer) & vault.hole).any():
         return None
     outer, inner = (
-        ndimage.gaussian_filter(extended(radius), _RAYS_APART / vault.mm) for radius in (told.outer, told.inner)
+        ndimage.gaussian_filter(extended(radius), _RAYS_APART / vault.mm)
+        for radius in (predicted.outer, predicted.inner)
     )
     return outer, inner
 

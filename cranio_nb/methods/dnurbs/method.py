@@ -1,4 +1,4 @@
-"""A rival in the paper's outlook: two elastic sheets, pulled to the bone around the hole and left to themselves in it.
+"""A method of the paper's outlook: two elastic sheets, pulled to the bone around the hole and left to themselves in it.
 
 Bone mask in, pieces out. Source: Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric
 design", IEEE TVCG 2(1). Faithful are the rational surface, its control points and weights as generalised coordinates,
@@ -134,6 +134,10 @@ def fit(
         As for `pieces`.
     dynamics : Dynamics, optional
         How the sheets move on from where frozen weights leave them; they stay there when not given.
+
+    Returns
+    -------
+    Sheets
     """
     spans = (max(round((len(vault.outer) - 1) * vault.mm / span_mm), 4),) * 2
     size = (len(vault.outer) - 1) * vault.mm / spans[0]
@@ -165,6 +169,11 @@ def springs_to(vault: radius_map.RadialChart, radius: NDArray[np.float64], spans
         The vault's outer or inner radii.
     spans : tuple of int
         Of the sheet.
+
+    Returns
+    -------
+    Springs
+        To points in mm along the map's axes from the head's centre.
     """
     known = np.isfinite(radius) & ~vault.hole
     points = (vault.directions[known] * radius[known][:, None]) @ vault.axes.T
@@ -180,6 +189,11 @@ def radii_of(one: Sheet, vault: radius_map.RadialChart) -> NDArray[np.float64]:
     one : Sheet
         In mm along the chart's axes from its eye.
     vault : RadialChart
+
+    Returns
+    -------
+    ndarray, shape (M, M)
+        mm.
     """
     near = ndimage.binary_dilation(vault.hole, iterations=3)
     wanted = np.argwhere(near).astype(float)

@@ -1,4 +1,4 @@
-"""A rival on triangle meshes: guiding points on the rim of the hole, and flat fills between them.
+"""A method on triangle meshes: guiding points on the rim of the hole, and flat fills between them.
 
 Bone mask in, pieces out. In the spirit of You et al. 2009, "A new modeling method on skull defect repair", of
 which we had only what others write about it: voxels are split into tetrahedra, marching tetrahedra give the mesh of the
@@ -123,7 +123,19 @@ def between_guides(bone: Volume, openings: Sequence[Opening], guides: Sequence[N
 
 
 def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.float64]:
-    """Points on the outer surface at even steps around a hole, shape (n_guides, 3), world mm."""
+    """Points on the outer surface at even steps around a hole.
+
+    Parameters
+    ----------
+    vault : RadialChart
+        The bone around the hole.
+    n_guides : int
+
+    Returns
+    -------
+    ndarray, shape (n_guides, 3)
+        World mm.
+    """
     soft = ndimage.gaussian_filter(vault.hole.astype(float), 1.5)
     outline = max(find_contours(np.pad(soft, 1), 0.5), key=len)[:-1] - 1
     closed = np.concatenate([outline, outline[:1]])
@@ -135,17 +147,21 @@ def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.floa
     return vault.eye + vault.directions[v, u] * vault.outer[v, u, None]
 
 
-def fill_between(bone: Volume, one: Opening, guides: NDArray[np.float64]) -> Filling:
+def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) -> Filling:
     """Fill one hole between guiding points.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    one : Opening
+    opening : Opening
         The hole.
     guides : ndarray, shape (n, 3)
         Near the outer edge of the rim, in order around the hole, world mm.
+
+    Returns
+    -------
+    Filling
 
     Raises
     ------
@@ -154,11 +170,11 @@ def fill_between(bone: Volume, one: Opening, guides: NDArray[np.float64]) -> Fil
     """
     if len(guides) < 3:
         raise InputRefused("TooFewGuides", f"There are {len(guides)} guiding points; 3 at least are wanted.")
-    skull = _main_part(tetrahedra.extract(bone.crop(_box(bone, one, guides))))
-    away = skull.vertices - one.head_centre
+    skull = _main_part(tetrahedra.extract(bone.crop(_box(bone, opening, guides))))
+    away = skull.vertices - opening.head_centre
     radius = np.linalg.norm(away, axis=1)
     lean = np.einsum("vd,vd->v", _vertex_normals(skull), away / radius[:, None])
-    normal = _normal(guides, one.direction)
+    normal = _normal(guides, opening.direction)
     outer_at = _nearest(skull.vertices, lean > _LEANS, _counter_clockwise(guides, normal))
     sight = away / radius[:, None] * np.median(radius)
     seen = np.column_stack([sight, _DEPTH_COUNTS * radius])
@@ -194,9 +210,9 @@ def _entry(one: Membrane) -> dict[str, Any]:
     return {"area": one.areas[-1], "harmonic_area": one.areas[0], "n_iter": len(one.areas), "converged": one.converged}
 
 
-def _box(bone: Volume, one: Opening, guides: NDArray) -> tuple[slice, slice, slice]:
+def _box(bone: Volume, opening: Opening, guides: NDArray) -> tuple[slice, slice, slice]:
     """Index box around the opening and the guides, with a margin."""
-    index = np.concatenate([np.argwhere(one.sheet.voxels), bone.to_voxel(guides)])
+    index = np.concatenate([np.argwhere(opening.sheet.voxels), bone.to_voxel(guides)])
     margin = _MARGIN / bone.spacing
     low = np.maximum(np.floor(index.min(axis=0) - margin).astype(int), 0)
     high = np.minimum(np.ceil(index.max(axis=0) + margin).astype(int) + 1, bone.shape)
