@@ -180,6 +180,20 @@ def compare(
     Returns
     -------
     Comparison
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from cranio_nb.output.files import write_nifti
+    >>> from cranio_nb.pipeline.trial import attempt, contenders
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "burr_hole", 0)
+    >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")
+    >>> write_nifti(cn.Volume(case.implant, case.affine), "truth.nii.gz")
+    >>> prepared = cn.prepare("skull.nii.gz", truth="truth.nii.gz")
+    >>> found = cn.compare(prepared, contenders(["hull", "hull:paper"]), attempt=attempt)
+    >>> {name: round(row["dice"], 1) for name, row in zip(found.made, found.rows)}
+    {'hull': 0.9, 'hull:paper': 0.8}
     """
     report = progress or (lambda step, done: None)
     truth = None if case.truth is None else Reference.of(case.truth, case.bone, case.openings[0])

@@ -83,6 +83,17 @@ def prepare(
         What cannot be read safely; ``OpeningLeavesImage``.
     NoOpening
         When there is nothing to close.
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from cranio_nb.output.files import write_nifti
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "burr_hole", 0)
+    >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")
+    >>> prepared = cn.prepare("skull.nii.gz")
+    >>> len(prepared.openings), prepared.threshold, prepared.truth
+    (1, None, None)
     """
     report = progress or (lambda step, done: None)
     clock = Clock()

@@ -110,6 +110,17 @@ def run_design(
         What cannot be read, designed or compared safely.
     NoOpening
         When there is nothing to close.
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from cranio_nb.output.files import write_nifti
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "burr_hole", 0)
+    >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")
+    >>> result = cn.run_design("skull.nii.gz", method="hull", options={"axial": True})
+    >>> result.prosthesis.parameters, result.mesh.sound, result.case.bone.shape
+    ({'axial': True, 'smooth': True}, True, ...)
     """
     options = dict(options or {})
     check_request(method, preset, options)
