@@ -8,7 +8,7 @@ from dicom_series import AXIAL, ORIGIN, save, series
 from scipy import ndimage
 
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.regrid import even_heights, missing_gaps, resample_heights, slide_slices
+from cranio_nb.readers.regrid import even_heights, find_missing_gaps, resample_planes, slide_slices
 from cranio_nb.volume import Volume
 
 SHAPE = (30, 44, 40)  # slices, rows, columns
@@ -116,11 +116,11 @@ def test_planes_are_interpolated_linearly() -> None:
     voxels = (100 * heights[:, None, None] * np.ones((3, 2, 2))).astype(np.int16)
     wanted = even_heights(heights, 1.0)
     np.testing.assert_allclose(wanted, np.arange(5.0))
-    np.testing.assert_array_equal(resample_heights(voxels, heights, wanted)[:, 0, 0], 100 * wanted)
+    np.testing.assert_array_equal(resample_planes(voxels, heights, wanted)[:, 0, 0], 100 * wanted)
 
 
 def test_gaps_tell_missing_slices_from_two_slice_distances() -> None:
     run = list(range(1, 14))
-    assert missing_gaps(np.delete(np.arange(14.0), 6), [None] * 13) == [5]
-    assert missing_gaps(np.cumsum([2.5] * 7 + [5.0] * 6), run) == []
-    assert missing_gaps(np.cumsum([2.5] * 7 + [5.0] * 6), [*run[:7], *range(9, 21, 2)]) == [6, 7, 8, 9, 10, 11]
+    assert find_missing_gaps(np.delete(np.arange(14.0), 6), [None] * 13) == [5]
+    assert find_missing_gaps(np.cumsum([2.5] * 7 + [5.0] * 6), run) == []
+    assert find_missing_gaps(np.cumsum([2.5] * 7 + [5.0] * 6), [*run[:7], *range(9, 21, 2)]) == [6, 7, 8, 9, 10, 11]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputRefused
-from .headers import SliceHeader, Vector
+from .slice_header import SliceHeader, Vector
 
 CORNER_TOL = 0.05  # mm
 MAX_STEP = 5.0  # mm between slices
@@ -59,7 +59,18 @@ class Stack:
         return float(self.heights[-1])
 
     def corner_errors(self, heights: Vector) -> Vector:
-        """Distance in mm, shape (N,), of each slice's worst corner from where the stack puts it at given heights."""
+        """How far each slice's worst corner lies from where the stack puts it.
+
+        Parameters
+        ----------
+        heights : ndarray, shape (N,)
+            mm along the normal at which the slices are put.
+
+        Returns
+        -------
+        ndarray, shape (N,)
+            mm.
+        """
         origins = self.origin + heights[:, None] * (self.normal + self.shear)
         model = _corners(origins, self.along_cols, self.along_rows, self.spacing, self.headers[0])
         own = np.stack([_own_corners(header) for header in self.headers])
@@ -67,17 +78,33 @@ class Stack:
 
 
 def axes_of(orientation: Vector) -> tuple[Vector, Vector, Vector]:
-    """Unit directions of the column index, the row index and the normal, the normal's largest part positive.
+    """The three directions of a slice.
+
+    Parameters
+    ----------
+    orientation : ndarray, shape (6,)
+        ImageOrientationPatient: unit directions in which the column and the row index grow, LPS.
+
+    Returns
+    -------
+    cols, rows, normal : ndarray, shape (3,)
+        Unit vectors at right angles; the normal's largest part is positive.
 
     Raises
     ------
     InputRefused
         ``BadGeometry`` unless the two directions are unit vectors at right angles within 1e-3.
+
+    Examples
+    --------
+    >>> axes_of(np.array([1.0, 0, 0, 0, 1, 0]))[2]
+    array([0., 0., 1.])
     """
     cols, rows = orientation[:3], orientation[3:]
     gram = np.array([cols @ cols, rows @ rows, cols @ rows])
     if not np.isfinite(gram).all() or np.abs(gram - [1, 1, 0]).max() > 2e-3:
         raise bad_geometry("The slice directions (ImageOrientationPatient) are not unit vectors at right angles.")
+    # rounded headers are made exactly orthogonal
     cols = cols / np.linalg.norm(cols)
     rows = rows - (rows @ cols) * cols
     rows = rows / np.linalg.norm(rows)
@@ -86,7 +113,17 @@ def axes_of(orientation: Vector) -> tuple[Vector, Vector, Vector]:
 
 
 def check_geometry(headers: list[SliceHeader]) -> None:
-    """Refuse slices whose position, orientation or pixel spacing is absent or no number (``BadGeometry``)."""
+    """Refuse slices whose position, orientation or pixel spacing is absent or no number.
+
+    Parameters
+    ----------
+    headers : list of SliceHeader
+
+    Raises
+    ------
+    InputRefused
+        ``BadGeometry``, naming the first such slice.
+    """
     for index, header in enumerate(headers):
         for name, value in (
             ("ImagePositionPatient", header.position),
@@ -102,12 +139,43 @@ def check_geometry(headers: list[SliceHeader]) -> None:
 
 
 def bad_geometry(message: str) -> InputRefused:
-    """The refusal for geometry that cannot be trusted; nothing is guessed from file order or slice numbers."""
+    """The refusal for geometry that cannot be trusted; nothing is guessed from file order or slice numbers.
+
+    Parameters
+    ----------
+    message : str
+        One sentence: what was found.
+
+    Returns
+    -------
+    InputRefused
+    """
     return InputRefused("BadGeometry", message, _REMEDY)
 
 
-def by_height(headers: list[SliceHeader]) -> tuple[list[SliceHeader], NDArray[np.float64]]:
-    """Headers sorted along the normal, and their heights in mm from 0."""
+def sort_by_height(headers: list[SliceHeader]) -> tuple[list[SliceHeader], NDArray[np.float64]]:
+    """Sort slices by their height along the normal.
+
+    Parameters
+    ----------
+    headers : list of SliceHeader
+        With positions; the first one's orientation gives the normal.
+
+    Returns
+    -------
+    ordered : list of SliceHeader
+        From the lowest to the highest.
+    heights : ndarray, shape (N,)
+        mm along the normal, from 0.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> axial = np.array([1.0, 0, 0, 0, 1, 0])
+    >>> slices = [SimpleNamespace(orientation=axial, position=np.array([0, 0, z])) for z in (105.0, 100.0, 102.5)]
+    >>> sort_by_height(slices)[1]
+    array([0. , 2.5, 5. ])
+    """
     *_, normal = axes_of(_orientation(headers[0]))
     heights = np.array([header.position for header in headers]) @ normal
     order = np.argsort(heights, kind="stable")
@@ -115,22 +183,36 @@ def by_height(headers: list[SliceHeader]) -> tuple[list[SliceHeader], NDArray[np
 
 
 def build_stack(headers: list[SliceHeader]) -> Stack:
-    """The straight stack through checked headers, one per height.
+    """Build the straight stack through checked headers.
+
+    Parameters
+    ----------
+    headers : list of SliceHeader
+        One per height.
+
+    Returns
+    -------
+    Stack
+        Slices by height, on the least-squares line through their positions.
 
     Raises
     ------
     InputRefused
         ``BadGeometry`` where all slices lie at one place, or a corner is more than `CORNER_TOL` mm off.
     """
-    ordered, heights = by_height(headers)
+    ordered, heights = sort_by_height(headers)
     if heights[-1] < SAME_PLACE:
         raise bad_geometry(f"All {len(headers)} slices lie at one position.")
     cols, rows, normal = axes_of(_orientation(ordered[0]))
+
+    # the line through the slices; what of it is not along the normal is the tilt of the gantry
     positions = np.array([header.position for header in ordered])
     origin, direction = _line(positions, heights)
     spacing = np.asarray(ordered[0].spacing, float)
     shear = direction - (direction @ normal) * normal
     shear[np.abs(shear) * heights[-1] < 1e-6] = 0  # rounding of the fit
+
+    # every slice must lie on it
     stack = Stack(tuple(ordered), origin, cols, rows, normal, spacing, heights, shear)
     errors = stack.corner_errors(heights)
     worst = int(errors.argmax())
@@ -160,4 +242,5 @@ def _own_corners(header: SliceHeader) -> Vector:
 
 
 def _orientation(header: SliceHeader) -> Vector:
+    """Orientation of a slice that was checked to have one, shape (6,)."""
     return np.asarray(header.orientation, float)

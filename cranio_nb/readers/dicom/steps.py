@@ -1,4 +1,4 @@
-"""Stack of slices -> the even steps at which the volume will stand, or why there are none. Lengths in mm."""
+"""Stack of slices -> the even steps between the planes of the volume, or why there are none. Lengths in mm."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from ...errors import InputRefused
 from ..load_report import Finding
-from ..regrid import even_heights, missing_gaps
+from ..regrid import even_heights, find_missing_gaps
 from .geometry import CORNER_TOL, MAX_STEP, MAX_STEP_RATIO, MIN_SLICES, Stack, bad_geometry
-from .scan import MAX_SLICES
+from .parse import MAX_SLICES
 
 _MIN_STEP = 0.05
 _REMEDY = "A head CT in thin slices, up to 2 mm apart, is best."
@@ -40,7 +40,7 @@ class Plan:
 
 
 def plan_steps(stack: Stack, allow: Collection[str] = ()) -> Plan:
-    """How the slices become an even stack.
+    """Plan how the slices become an even stack.
 
     Parameters
     ----------
@@ -49,15 +49,23 @@ def plan_steps(stack: Stack, allow: Collection[str] = ()) -> Plan:
     allow : collection of str
         ``"gap_fill"`` interpolates missing slices.
 
+    Returns
+    -------
+    Plan
+        The step, and the heights to interpolate at where the slices are not even.
+
     Raises
     ------
     InputRefused
         ``MissingSlices``, ``TooFewSlices``, ``SlicesTooFarApart``, ``UnevenSpacing``, ``BadGeometry``.
     """
+    # no slice may be missing
     gaps = np.diff(stack.heights)
-    gone = missing_gaps(stack.heights, [header.instance for header in stack.headers])
+    gone = find_missing_gaps(stack.heights, [header.instance for header in stack.headers])
     if gone and "gap_fill" not in allow:
         raise _missing(stack, gone, gaps)
+
+    # enough of them, and near enough
     if len(stack.headers) < MIN_SLICES:
         message = f"The series has {len(stack.headers)} slices; at least {MIN_SLICES} are wanted."
         raise InputRefused("TooFewSlices", message, "Give the folder with all slices of a head CT.")
@@ -66,6 +74,8 @@ def plan_steps(stack: Stack, allow: Collection[str] = ()) -> Plan:
         raise InputRefused("SlicesTooFarApart", message, _REMEDY)
     if gaps.min() < _MIN_STEP:
         raise bad_geometry(f"Two slices are only {gaps.min():.3f} mm apart.")
+
+    # even already, within the tolerance at every corner
     findings = _numbering(stack) + _thickness(stack, float(np.median(gaps)))
     step = stack.extent / (len(stack.headers) - 1)
     error = float(stack.corner_errors(step * np.arange(len(gaps) + 1, dtype=float)).max())
@@ -75,6 +85,7 @@ def plan_steps(stack: Stack, allow: Collection[str] = ()) -> Plan:
 
 
 def _even_plan(stack: Stack, gaps: NDArray[np.float64], gone: list[int], findings: list[Finding]) -> Plan:
+    """A plan that interpolates uneven slices to steps of the smallest gap."""
     low, high = float(gaps.min()), float(gaps.max())
     if high > MAX_STEP_RATIO * low and not gone:
         message = f"Slices are between {low:.2f} and {high:.2f} mm apart: too uneven to be interpolated."
@@ -92,7 +103,7 @@ def _even_plan(stack: Stack, gaps: NDArray[np.float64], gone: list[int], finding
 
 
 def _filled(stack: Stack, gone: list[int], wanted: NDArray[np.float64]) -> Finding:
-    """Which planes (of the stack, from below) stand on interpolated data only."""
+    """Which planes (of the stack, from below) hold interpolated data only."""
     ranges = [(float(stack.heights[i]), float(stack.heights[i + 1])) for i in gone]
     planes = [k for k, h in enumerate(wanted) if any(a + 1e-3 < h < b - 1e-3 for a, b in ranges)]
     places = "1 place" if len(gone) == 1 else f"{len(gone)} places"
@@ -101,6 +112,7 @@ def _filled(stack: Stack, gone: list[int], wanted: NDArray[np.float64]) -> Findi
 
 
 def _missing(stack: Stack, gone: list[int], gaps: NDArray[np.float64]) -> InputRefused:
+    """The refusal for missing slices, with the places where they are missed."""
     base = float(np.median(gaps))
     positions = [float(np.asarray(stack.headers[i].position)[2]) for i in gone]
     listed = ", ".join(

@@ -148,12 +148,12 @@ def test_folder_without_permission_is_refused(tmp_path: Path, monkeypatch: pytes
     def closed(path: object) -> None:
         raise PermissionError(13, "Permission denied", str(path))
 
-    monkeypatch.setattr("cranio_nb.readers.dicom.files.os.scandir", closed)
+    monkeypatch.setattr("cranio_nb.readers.dicom.file_list.os.scandir", closed)
     assert refusal(save(tmp_path / "scan", series(head()))).code == "PermissionDenied"
 
 
 def test_too_many_files_are_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cranio_nb.readers.dicom.files.MAX_FILES", 20)
+    monkeypatch.setattr("cranio_nb.readers.dicom.file_list.MAX_FILES", 20)
     assert refusal(save(tmp_path / "scan", series(head()))).code == "LimitExceeded"
 
 
