@@ -7,15 +7,11 @@ r(d) about `HeadShape.centre`, so a point p is inside one exactly when |p - cent
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .truth import SliceTruth, gaps_in_slice
-
-if TYPE_CHECKING:
-    from .defect import Cutter
+from .defect import Cutter
 
 Array = NDArray[np.float64]
 
@@ -107,18 +103,6 @@ class HeadShape:
         outer = self.outer_radius(d)
         shell = (length < outer) & (length >= outer - self.bone_thickness(d))
         return shell & (self.foramen_distance(p) <= 0)
-
-    def slice_truth(self, affine: Array, plane: float) -> tuple[SliceTruth, ...]:
-        """Every gap the defects leave in one plane of a scan; see `SliceTruth`.
-
-        Parameters
-        ----------
-        affine : ndarray, shape (4, 4)
-            Voxel (plane, row, col) -> world mm of the scan.
-        plane : float
-            Plane index.
-        """
-        return gaps_in_slice(self, affine, plane)
 
     def _outer_slope(self, d: Array) -> Array:
         """Gradient of (1 + h(x)) / N(x) at unit directions, before it is made tangential."""

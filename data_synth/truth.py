@@ -6,13 +6,12 @@ Frame: slice (row, col) px, found by intersecting the closed-form surfaces with 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from .head import HeadShape
+from .head import HeadShape
 
 Array = NDArray[np.float64]
 _N_RAYS = 720

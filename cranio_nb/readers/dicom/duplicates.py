@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import InputRefused
 from ..load_report import Finding
 from .geometry import SAME_PLACE, bad_geometry, check_geometry, sort_by_height
-from .pixel_data import check_format, digest_pixels
+from .pixel_data import check_format, digest_pixels, read_pixels
 from .slice_header import SliceHeader
 
 # what may tell two scans at the same positions apart
@@ -115,7 +115,8 @@ def _without_copies(groups: list[list[SliceHeader]]) -> tuple[list[list[SliceHea
         different: dict[object, SliceHeader] = {}
         for header in group:
             check_format(header, index)
-            meaning = (digest_pixels(header, index), header.slope, header.intercept, tuple(np.asarray(header.position)))
+            pixels = digest_pixels(read_pixels(header, index))
+            meaning = (pixels, header.slope, header.intercept, tuple(np.asarray(header.position)))
             different.setdefault(meaning, header)
         kept.append(list(different.values()))
         dropped += len(group) - len(different)
