@@ -84,6 +84,11 @@ def phantom_case(
     tilt_deg : float
         Lean of the planes about the x axis (gantry tilt); the affine then has a shear.
 
+    Returns
+    -------
+    Case
+        CT, defective skull and missing bone on one grid, with the closed-form head.
+
     Raises
     ------
     ValueError
@@ -110,6 +115,11 @@ def leaning(affine: ArrayLike, tilt_deg: float) -> Array:
         Voxel -> world mm.
     tilt_deg : float
         Positive raises the rows at the back.
+
+    Returns
+    -------
+    ndarray, shape (4, 4)
+        Voxel -> world mm.
     """
     affine, angle = np.array(affine, float), np.deg2rad(tilt_deg)
     c, s = np.cos(angle), np.sin(angle)
