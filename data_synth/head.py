@@ -69,48 +69,15 @@ class HeadShape:
         return (1 + polynomial(self.shape, SHAPE_TERMS, x)) / self.norm(x)
 
     def inner_radius(self, directions: ArrayLike) -> Array:
-        """Distance of the inner skull surface from the centre along rays.
-
-        Parameters
-        ----------
-        directions : array_like, shape (..., 3)
-            Unit vectors.
-
-        Returns
-        -------
-        ndarray, shape (...)
-            mm.
-        """
+        """Distance of the inner skull surface from the centre along rays; all else as for `outer_radius`."""
         return self.outer_radius(directions) - self.bone_thickness(directions)
 
     def skin_radius(self, directions: ArrayLike) -> Array:
-        """Distance of the scalp from the centre along rays.
-
-        Parameters
-        ----------
-        directions : array_like, shape (..., 3)
-            Unit vectors.
-
-        Returns
-        -------
-        ndarray, shape (...)
-            mm.
-        """
+        """Distance of the scalp from the centre along rays; all else as for `outer_radius`."""
         return self.outer_radius(directions) + self.scalp
 
     def bone_thickness(self, directions: ArrayLike) -> Array:
-        """Thickness of the skull along rays from the centre.
-
-        Parameters
-        ----------
-        directions : array_like, shape (..., 3)
-            Unit vectors.
-
-        Returns
-        -------
-        ndarray, shape (...)
-            mm.
-        """
+        """Thickness of the skull along rays from the centre; all else as for `outer_radius`."""
         return polynomial(self.thickness, THICKNESS_TERMS, np.asarray(directions, float))
 
     def norm(self, offsets: ArrayLike) -> Array:

@@ -155,7 +155,7 @@ def gaps_in_slice(head: HeadShape, affine: Array, plane: float) -> tuple[SliceTr
     head : HeadShape
         With its cutters.
     affine : ndarray, shape (4, 4)
-        Voxel (plane, row, col) -> world mm; planes may lean but must not stand upright.
+        Voxel (plane, row, col) -> world mm; planes may lean, but not along the head's axis.
     plane : float
         Plane index.
 

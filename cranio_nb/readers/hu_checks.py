@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from .load_report import Finding
 
-AIR = -1024  # HU given to pixels outside the field of view
+AIR_HU = -1024  # HU given to pixels outside the field of view
 _SAMPLE = 2_000_000  # voxels from which percentiles are taken
 
 
@@ -51,7 +51,7 @@ def clear_padding(hu: NDArray) -> tuple[NDArray, list[Finding]]:
     Returns
     -------
     hu : ndarray, shape (P, R, C)
-        The same, or a copy with padding at `AIR`.
+        The same, or a copy with padding at `AIR_HU`.
     findings : list of Finding
         What was set to air; empty where nothing was.
 
@@ -67,12 +67,13 @@ def clear_padding(hu: NDArray) -> tuple[NDArray, list[Finding]]:
     low = float(hu.min())
     if low > -1500:
         return hu, []
+    # how much lies far below air, and how much between
     sample = _sample(hu)
     far, below = float((sample < -1350).mean()), float((sample < -1200).mean())
     if not 1e-3 <= far <= 0.35 or far < 0.9 * below or float((sample > 300).mean()) < 1e-4:
         return hu, []
-    message = f"Voxels down to {low:g} HU lie outside the field of view; they were set to {AIR} HU."
-    cleared = np.where(hu < -1350, hu.dtype.type(AIR), hu)
+    message = f"Voxels down to {low:g} HU lie outside the field of view; they were set to {AIR_HU} HU."
+    cleared = np.where(hu < -1350, hu.dtype.type(AIR_HU), hu)
     return cleared, [Finding("PaddingWithoutTag", "corrected", message, {"value": low, "fraction": far})]
 
 
@@ -162,6 +163,7 @@ def check_finite(voxels: NDArray) -> None:
 
 def _sample(voxels: NDArray) -> NDArray:
     """An even selection of voxels, the same each time."""
+    # some 64 planes, and of those every so many pixels
     planes = voxels[:: max(1, voxels.shape[0] // 64)]
     step = max(1, int(np.sqrt(planes.size / _SAMPLE)))
     return planes[:, ::step, ::step]

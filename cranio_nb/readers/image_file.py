@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..volume import Volume, canonical_order
-from .hu_checks import AIR, check_finite, check_hu, clear_padding, is_mask
+from .hu_checks import AIR_HU, check_finite, check_hu, clear_padding, is_mask
 from .load_report import Finding, LoadReport
 from .regrid import slide_slices
 from .stored_image import Image
 
-_SPACING_RANGE = (0.1, 10.0)  # mm
-_CORNER_TOL = 0.05  # mm
+_SPACING_RANGE_MM = (0.1, 10.0)  # mm
+_CORNER_TOL_MM = 0.05  # mm
 
 
 def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] = ()) -> tuple[Volume, LoadReport]:
@@ -29,9 +29,7 @@ def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] =
     ----------
     path : Path
         A .nii, .nii.gz or .nrrd file, known by its first bytes.
-    mask : bool, optional
-        As for `cranio_nb.readers.read_ct`.
-    allow : collection of str
+    mask, allow
         As for `cranio_nb.readers.read_ct`.
 
     Returns
@@ -89,7 +87,7 @@ def check_grid(image: Image) -> None:
     matrix, remedy = image.affine[:3, :3], "Convert the file again from its source."
     if not np.isfinite(image.affine).all() or abs(np.linalg.det(matrix)) < 1e-9:
         raise InputRefused("BadGeometry", "The file's affine is not finite and invertible.", remedy)
-    spacing, (low, high) = np.linalg.norm(matrix, axis=0), _SPACING_RANGE
+    spacing, (low, high) = np.linalg.norm(matrix, axis=0), _SPACING_RANGE_MM
     if spacing.min() < low or spacing.max() > high:
         listed = " x ".join(f"{s:.4g}" for s in spacing)
         message = f"Voxels measure {listed} mm; {low:g} to {high:g} mm are wanted."
@@ -118,6 +116,7 @@ def _scaled(raw: NDArray, slope: float, intercept: float) -> NDArray:
 
 def _compact(hu: NDArray) -> NDArray:
     """int16 where all values are whole and fit, else float32."""
+    # whole numbers may be stored as real ones
     info = np.iinfo(np.int16)
     if info.min <= hu.min() and hu.max() <= info.max:
         whole = hu.astype(np.int16)
@@ -128,6 +127,7 @@ def _compact(hu: NDArray) -> NDArray:
 
 def _finish(image: Image, voxels: NDArray, findings: list[Finding]) -> tuple[Volume, LoadReport]:
     """The upright volume on the package's axes, and the report."""
+    # axes permuted and flipped into the package's order
     stored = Volume(voxels, image.affine)
     order = canonical_order(image.affine)
     volume = stored.reorder(order)
@@ -144,7 +144,7 @@ def _upright(volume: Volume) -> tuple[Volume, list[Finding]]:
     """A volume whose planes lie straight above each other: a sheared one has its planes shifted back."""
     planes, rows, cols = volume.affine[:3, :3].T
     spacing = volume.spacing
-    if abs(rows @ cols) / (spacing[1] * spacing[2]) * max(volume.shape[1:]) * spacing[1:].max() > _CORNER_TOL:
+    if abs(rows @ cols) / (spacing[1] * spacing[2]) * max(volume.shape[1:]) * spacing[1:].max() > _CORNER_TOL_MM:
         message = "The rows and columns of the file's affine are not at right angles."
         raise InputRefused("BadGeometry", message, "Resample the image onto a straight grid.")
 
@@ -156,7 +156,7 @@ def _upright(volume: Volume) -> tuple[Volume, list[Finding]]:
         return volume, []
 
     # the planes shifted back, and the plane axis set upright
-    fill = 0 if volume.voxels.dtype == bool else AIR
+    fill = 0 if volume.voxels.dtype == bool else AIR_HU
     voxels, start = slide_slices(volume.voxels, np.arange(count)[:, None] * slide, fill=fill)
     affine = volume.affine.copy()
     affine[:3, 0] = planes - slide @ in_plane

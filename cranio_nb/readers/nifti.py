@@ -78,6 +78,7 @@ def _header(data: BinaryIO) -> Any:
     from nibabel.imageglobals import LoggingOutputSuppressor
     from nibabel.spatialimages import HeaderDataError
 
+    # two files, one file, or none of NIfTI
     start = data.read(540)
     data.seek(0)
     if start[344:347] == b"ni1" or start[4:7] == b"ni2":
@@ -137,6 +138,7 @@ def _sizes_disagree(header: Any) -> list[Finding]:
     """A remark where the sform gives the voxels another size than pixdim does."""
     if int(header["sform_code"]) <= 0:
         return []
+    # the sform's columns are the steps between voxels
     pixdim, spacing = np.asarray(header["pixdim"][1:4], float), np.linalg.norm(header.get_sform()[:3, :3], axis=0)
     if np.allclose(pixdim, spacing, rtol=0.01):
         return []
@@ -148,6 +150,7 @@ def _disagreement(header: Any) -> list[Finding]:
     """A remark where sform and qform place the image's far corner apart."""
     if int(header["sform_code"]) <= 0 or int(header["qform_code"]) <= 0:
         return []
+    # the corner where a difference shows most
     far = np.array([*header.get_data_shape()[:3], 1.0])
     apart = float(np.linalg.norm((header.get_sform() - header.get_qform()) @ far))
     if not apart > 1.0:

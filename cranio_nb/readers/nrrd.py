@@ -127,6 +127,7 @@ def _header(stream: BinaryIO) -> dict[str, Any]:
 def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[bytearray, list[Finding]]:
     """The declared bytes of voxels, and a remark where there are more."""
     encoding = str(header["encoding"]).lower()
+    # what is skipped or coded otherwise would be misread
     skips = [int(header.get(name, 0)) for name in ("line skip", "lineskip", "byte skip", "byteskip")]
     if encoding not in _ENCODINGS or any(skips):
         what = "skips lines or bytes" if any(skips) else f"has the encoding {_plain(encoding)}"
@@ -156,6 +157,7 @@ def _dtype(header: dict[str, Any]) -> np.dtype:
 
 def _directions(header: dict[str, Any], dimension: int) -> list[NDArray[np.float64] | None]:
     """One vector per axis, None for an axis outside space; empty where the file has none."""
+    # rows of nan belong to axes outside space
     rows = header.get("space directions")
     if rows is None:
         return []

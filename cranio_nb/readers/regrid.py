@@ -116,6 +116,7 @@ def resample_planes(voxels: NDArray, heights: NDArray[np.float64], wanted: NDArr
     >>> resample_planes(planes, np.array([0.0, 4.0]), np.array([0.0, 1.0, 4.0])).ravel()
     array([  0,  25, 100], dtype=int16)
     """
+    # each height between two planes, and how far along
     below = np.clip(np.searchsorted(heights, wanted, side="right") - 1, 0, len(heights) - 2)
     part = (wanted - heights[below]) / (heights[below + 1] - heights[below])
     planes = np.empty((len(wanted), *voxels.shape[1:]), voxels.dtype)
@@ -149,9 +150,11 @@ def find_missing_gaps(heights: NDArray[np.float64], instances: list[int | None])
     >>> find_missing_gaps(np.array([0.0, 1, 2, 3, 5, 6, 7, 8]), [None] * 8)
     [3]
     """
+    # wide beside the gaps around it
     gaps = np.diff(heights)
     local = np.array([np.median(gaps[max(i - 3, 0) : i + 4]) for i in range(len(gaps))])
     suspect = gaps > 1.5 * local
+    # or as wide as the slice numbers jump
     if all(n is not None for n in instances) and len(gaps):
         jumps = np.array([abs(b - a) for a, b in pairwise(n for n in instances if n is not None)])
         times = np.rint(gaps / gaps.min())

@@ -15,7 +15,7 @@ from ..volume import Affine
 from .load_report import Finding
 
 MAX_VOXELS = 2**30
-_MAX_REST = 2**26  # bytes
+_MAX_REST_BYTES = 2**26  # bytes
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +103,7 @@ def check_rest(stream: BinaryIO) -> list[Finding]:
     {'at_least': 4}
     """
     rest = 0
-    while rest <= _MAX_REST:
+    while rest <= _MAX_REST_BYTES:
         part = stream.read(2**22)
         if not part:
             break

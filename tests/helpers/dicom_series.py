@@ -193,3 +193,18 @@ def read_folder(folder: Path) -> list[SliceHeader]:
         assert parsed is not None
         headers += read_headers(*parsed, index)
     return headers
+
+
+def shift_hu(by: float, factor: float = 1) -> Callable[[list[Dataset]], None]:
+    def change(datasets: list[Dataset]) -> None:
+        for ds in datasets:
+            stored = np.frombuffer(ds.PixelData, "<u2").reshape(ds.Rows, ds.Columns).astype(float)
+            set_pixels(ds, ((stored - 1024) * factor + by + 8192).astype(int))
+            ds.RescaleIntercept = -8192
+
+    return change
+
+
+def as_unsigned_without_rescale(datasets: list[Dataset]) -> None:
+    for ds in datasets:
+        del ds.RescaleSlope, ds.RescaleIntercept

@@ -1,16 +1,14 @@
 """Values that are HU, a mask, or neither."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import codes, edit, head, save, series, set_pixels
+from dicom_series import as_unsigned_without_rescale, codes, edit, head, save, series, shift_hu
 from image_files import SMALL, file_refusal, stored_head, write_nifti, write_nrrd
-from pydicom.dataset import Dataset
 
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.hu_checks import AIR, check_hu, clear_padding, is_mask
+from cranio_nb.readers.hu_checks import AIR_HU, check_hu, clear_padding, is_mask
 
 
 @pytest.mark.parametrize("dtype", ["u1", "i2", "u2", "i4", "f4", "f8"])
@@ -51,21 +49,6 @@ def test_unscaled_hu_are_refused_unless_allowed(tmp_path: Path) -> None:
 
 
 EVERY = slice(None)
-
-
-def shift_hu(by: float, factor: float = 1) -> Callable[[list[Dataset]], None]:
-    def change(datasets: list[Dataset]) -> None:
-        for ds in datasets:
-            stored = np.frombuffer(ds.PixelData, "<u2").reshape(ds.Rows, ds.Columns).astype(float)
-            set_pixels(ds, ((stored - 1024) * factor + by + 8192).astype(int))
-            ds.RescaleIntercept = -8192
-
-    return change
-
-
-def as_unsigned_without_rescale(datasets: list[Dataset]) -> None:
-    for ds in datasets:
-        del ds.RescaleSlope, ds.RescaleIntercept
 
 
 def test_allowances_turn_refusals_into_warnings(tmp_path: Path) -> None:
@@ -110,7 +93,7 @@ def test_padding_is_cleared_only_where_a_head_remains() -> None:
     before = padded.copy()
     cleared, (finding,) = clear_padding(padded)
     np.testing.assert_array_equal(padded, before)
-    np.testing.assert_array_equal(cleared, np.where(before == -3024, AIR, before))
+    np.testing.assert_array_equal(cleared, np.where(before == -3024, AIR_HU, before))
     assert finding.values["value"] == -3024
     shifted = plain_head() - 2000  # the whole scale is off
     kept, findings = clear_padding(shifted)

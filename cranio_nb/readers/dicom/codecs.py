@@ -29,7 +29,7 @@ _NEEDED = {
     **dict.fromkeys(_JPEG2000, ("openjpeg", "pylibjpeg-openjpeg")),
     **dict.fromkeys(_JPEG, ("libjpeg", "pylibjpeg-libjpeg")),
 }
-# markers that stand before the size: start of frame of JPEG and JPEG-LS (all but tables), and SIZ of JPEG 2000
+# markers before the size: start of frame of JPEG and JPEG-LS (all but tables), and SIZ of JPEG 2000
 _FRAME_MARKERS = {*range(0xC0, 0xD0), 0xF7} - {0xC4, 0xC8, 0xCC}
 _NO_LENGTH = {0x01, *range(0xD0, 0xD9)}
 

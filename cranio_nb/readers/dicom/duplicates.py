@@ -9,7 +9,7 @@ import numpy as np
 
 from ...errors import InputRefused
 from ..load_report import Finding
-from .geometry import SAME_PLACE, bad_geometry, check_geometry, sort_by_height
+from .geometry import SAME_PLACE_MM, bad_geometry, check_geometry, sort_by_height
 from .pixel_data import check_format, digest_pixels, read_pixels
 from .slice_header import SliceHeader
 
@@ -67,7 +67,7 @@ def keep_one_per_position(
     check_geometry(headers)
     headers, findings = _with_pixels(headers, "gap_fill" in allow)
     ordered, heights = sort_by_height(headers)
-    if len(ordered) > 1 and heights[-1] < SAME_PLACE:
+    if len(ordered) > 1 and heights[-1] < SAME_PLACE_MM:
         raise bad_geometry(f"All {len(ordered)} slices lie at one position.")
 
     # copies go; what is left at one place are two scans
@@ -98,7 +98,7 @@ def _position_groups(ordered: list[SliceHeader], heights: np.ndarray) -> list[li
     """Slices at one place together, by height."""
     groups = [[ordered[0]]]
     for (below, above), header in zip(pairwise(heights), ordered[1:], strict=True):
-        if above - below < SAME_PLACE:
+        if above - below < SAME_PLACE_MM:
             groups[-1].append(header)
         else:
             groups.append([header])
@@ -112,6 +112,7 @@ def _without_copies(groups: list[list[SliceHeader]]) -> tuple[list[list[SliceHea
         if len(group) == 1:
             kept.append(group)
             continue
+        # by pixels and rescale; the first of equals stays
         different: dict[object, SliceHeader] = {}
         for header in group:
             check_format(header, index)
@@ -125,6 +126,7 @@ def _without_copies(groups: list[list[SliceHeader]]) -> tuple[list[list[SliceHea
 
 def _two_scans(groups: list[list[SliceHeader]]) -> InputRefused:
     """The refusal for two scans in one series, with what tells them apart."""
+    # what differs at every doubled position is what tells the scans apart
     doubled = [i for i, group in enumerate(groups) if len(group) > 1]
     differ = [name for name, key in _SPLITS.items() if all(len({key(h) for h in groups[i]}) > 1 for i in doubled)]
     by = f"; they differ in {' and '.join(differ)}" if differ else ""

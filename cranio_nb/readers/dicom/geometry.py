@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from ...errors import InputRefused
 from .slice_header import SliceHeader, Vector
 
-CORNER_TOL = 0.05  # mm
-MAX_STEP = 5.0  # mm between slices
+CORNER_TOL_MM = 0.05  # mm
+MAX_STEP_MM = 5.0  # mm between slices
 MAX_STEP_RATIO = 4.0  # widest to narrowest step that is resampled
 MIN_SLICES = 8
-SAME_PLACE = 1e-3  # mm
-_SPACING_RANGE = (0.05, 10.0)  # mm in the plane
+SAME_PLACE_MM = 1e-3  # mm
+_SPACING_RANGE_MM = (0.05, 10.0)  # mm in the plane
 _REMEDY = "Export the series again from its source."
 
 
@@ -133,7 +133,7 @@ def check_geometry(headers: list[SliceHeader]) -> None:
             if value is None or not np.isfinite(value).all():
                 what = "has no" if value is None else "has an unreadable"
                 raise bad_geometry(f"Slice {index} (in file order) {what} {name}.")
-        low, high = _SPACING_RANGE
+        low, high = _SPACING_RANGE_MM
         if header.spacing is None or header.spacing.min() < low or header.spacing.max() > high:
             raise bad_geometry(f"Slice {index} (in file order) has a PixelSpacing outside {low} to {high} mm.")
 
@@ -198,10 +198,23 @@ def build_stack(headers: list[SliceHeader]) -> Stack:
     Raises
     ------
     InputRefused
-        ``BadGeometry`` where all slices lie at one place, or a corner is more than `CORNER_TOL` mm off.
+        ``BadGeometry`` where all slices lie at one place, or a corner is more than `CORNER_TOL_MM` off.
+
+    Examples
+    --------
+    A gantry tilted by 10 degrees lets each slice slide by tan(10 degrees) mm for each mm of height:
+
+    >>> from data_synth import write_dicom
+    >>> from .parse import parse_file
+    >>> from .slice_header import read_headers
+    >>> hu = np.zeros((8, 4, 4), np.int16)
+    >>> files = write_dicom("scan", hu, np.diag([2.5, 1, 1, 1])[[2, 1, 0, 3]], tilt_deg=10)
+    >>> stack = build_stack([header for file in files for header in read_headers(*parse_file(file, 0), 0)])
+    >>> bool(np.isclose(np.linalg.norm(stack.shear), np.tan(np.radians(10))))
+    True
     """
     ordered, heights = sort_by_height(headers)
-    if heights[-1] < SAME_PLACE:
+    if heights[-1] < SAME_PLACE_MM:
         raise bad_geometry(f"All {len(headers)} slices lie at one position.")
     cols, rows, normal = axes_of(_orientation(ordered[0]))
 
@@ -216,13 +229,14 @@ def build_stack(headers: list[SliceHeader]) -> Stack:
     stack = Stack(tuple(ordered), origin, cols, rows, normal, spacing, heights, shear)
     errors = stack.corner_errors(heights)
     worst = int(errors.argmax())
-    if errors[worst] > CORNER_TOL:
+    if errors[worst] > CORNER_TOL_MM:
         raise bad_geometry(f"Slice {worst} lies {errors[worst]:.2f} mm off the straight stack of the others.")
     return stack
 
 
 def _line(positions: Vector, heights: Vector) -> tuple[Vector, Vector]:
     """Least-squares line: position = origin + height * direction."""
+    # one fit for all three coordinates
     design = np.stack([np.ones_like(heights), heights], axis=1)
     (origin, direction), *_ = np.linalg.lstsq(design, positions, rcond=None)
     return origin, direction
@@ -230,6 +244,7 @@ def _line(positions: Vector, heights: Vector) -> tuple[Vector, Vector]:
 
 def _corners(origin: Vector | None, cols: Vector, rows: Vector, spacing: Vector | None, header: SliceHeader) -> Vector:
     """Corners of slices whose first pixels are at `origin`, shape (..., 4, 3)."""
+    # from the centre of the first pixel to those of the other corners
     down, right = np.asarray(spacing) * (header.rows - 1, header.cols - 1)
     steps = np.array([[0, 0], [0, right], [down, 0], [down, right]]) @ np.stack([rows, cols])
     return np.asarray(origin)[..., None, :] + steps

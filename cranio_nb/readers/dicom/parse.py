@@ -208,9 +208,11 @@ def open_dataset(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
         ``LimitExceeded`` for more than `MAX_INFLATED` bytes.
     """
     stream.seek(128)
+    # without preamble the elements begin at once
     if stream.read(4) != b"DICM":
         stream.seek(0)
     meta = read_dataset(stream, False, True, stop_when=lambda tag, vr, length: tag >> 16 != 2)
+    # deflated: everything behind the meta elements is one packed stream
     if meta.get("TransferSyntaxUID") != DeflatedExplicitVRLittleEndian:
         return meta, stream
     inflate = zlib.decompressobj(-zlib.MAX_WBITS)
@@ -295,6 +297,7 @@ def _items_complete(data: BinaryIO, offset: int, size: int) -> bool:
         data.seek(offset)
         group, element, length = struct.unpack("<HHL", data.read(8))
         tag = group << 16 | element
+        # an end mark, or an item with its own length
         if tag == _SEQUENCE_END:
             return True
         if tag != _ITEM or length == UNDEFINED_LENGTH:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ...errors import InputRefused
 from ...volume import Affine, Volume, canonical_order
-from ..hu_checks import AIR, check_finite, check_hu, clear_padding, is_mask
+from ..hu_checks import AIR_HU, check_finite, check_hu, clear_padding, is_mask
 from ..load_report import Finding, LoadReport
 from ..regrid import resample_planes, slide_slices
 from .codecs import LOSSY
@@ -40,9 +40,7 @@ def read_dicom(
     ----------
     path : Path
         Folder, or multi-frame file.
-    mask : bool, optional
-        As for `cranio_nb.readers.read_ct`.
-    allow : collection of str
+    mask, allow
         As for `cranio_nb.readers.read_ct`.
     progress : callable, optional
         Called with (slices done, slices in all).
@@ -139,7 +137,7 @@ def _voxels(
     # HU: rescaled, without padding, each slice at the level of the others
     findings = [check_unscaled(voxels, stack.headers[0].signed, allow)] if unscaled else []
     if padded:
-        message = f"{padded} pixels of padding were set to {AIR} HU."
+        message = f"{padded} pixels of padding were set to {AIR_HU} HU."
         findings.append(Finding("Padding", "corrected", message, {"pixels": padded}))
     voxels, more = clear_padding(voxels)
     findings += more
@@ -187,7 +185,7 @@ def _remarks(stack: Stack) -> list[Finding]:
 def _upright(voxels: NDArray, stack: Stack, plan: Plan) -> tuple[NDArray, Affine, list[Finding]]:
     """Voxels on an even grid with its affine (plane, row, col) -> mm."""
     # where each slice slides to in its own plane, px
-    fill = 0 if voxels.dtype == bool else AIR
+    fill = 0 if voxels.dtype == bool else AIR_HU
     origin, direction, findings = stack.origin, stack.normal + stack.shear, []
     rows, cols = stack.along_rows * stack.spacing[0], stack.along_cols * stack.spacing[1]
     slides = stack.heights[:, None] * (stack.shear @ np.stack([rows, cols]).T / stack.spacing**2)

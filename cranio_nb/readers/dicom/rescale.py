@@ -12,15 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputRefused
-from ..hu_checks import AIR
+from ..hu_checks import AIR_HU
 from ..load_report import Finding
 from .pixel_data import clear_unused_bits
 from .slice_header import SliceHeader
 
 _SLOPES = (1e-3, 1e3)
-_MAX_INTERCEPT = 32768.0  # HU
-_AIR_PEAK = (-1200, -900)  # HU of the smallest value in a scan that is already in HU
-_JUMP = 300.0  # HU between the air of one slice and that of the others
+_MAX_INTERCEPT_HU = 32768.0  # HU
+_AIR_PEAK_HU = (-1200, -900)  # HU of the smallest value in a scan that is already in HU
+_JUMP_HU = 300.0  # HU between the air of one slice and that of the others
 _REMEDY = "Export the scan again as a plain CT series."
 
 
@@ -60,7 +60,7 @@ def check_rescale(headers: Sequence[SliceHeader]) -> tuple[NDArray[np.float64], 
         raise InputRefused("InconsistentRescale", message, _REMEDY)
     pairs = np.array([(h.slope, h.intercept) for h in headers], float)
     for index, (slope, intercept) in enumerate(pairs):
-        if not (_SLOPES[0] <= slope <= _SLOPES[1] and abs(intercept) <= _MAX_INTERCEPT):
+        if not (_SLOPES[0] <= slope <= _SLOPES[1] and abs(intercept) <= _MAX_INTERCEPT_HU):
             message = f"Slice {index} has the rescale slope {slope:g} and intercept {intercept:g}."
             raise InputRefused("BadRescale", message, _REMEDY)
     return pairs, False
@@ -94,7 +94,7 @@ def check_unscaled(hu: NDArray, signed: bool, allow: Collection[str] = ()) -> Fi
     'MissingRescale'
     """
     low = float(hu.min())
-    if not (signed and _AIR_PEAK[0] <= low <= _AIR_PEAK[1]) and "no_rescale" not in allow:
+    if not (signed and _AIR_PEAK_HU[0] <= low <= _AIR_PEAK_HU[1]) and "no_rescale" not in allow:
         raise InputRefused(
             "MissingRescale",
             f"No slice has a rescale slope and intercept, and the smallest stored value is {low:g}: these are not HU.",
@@ -133,7 +133,7 @@ def check_levels(levels: NDArray[np.float64], pairs: NDArray[np.float64]) -> lis
     >>> [finding.code for finding in check_levels(np.array([-500.0] + 9 * [-1000.0]), pairs)]
     ['LevelJump']
     """
-    off = np.flatnonzero(np.abs(levels - np.median(levels)) > _JUMP)
+    off = np.flatnonzero(np.abs(levels - np.median(levels)) > _JUMP_HU)
     if not 0 < len(off) <= 0.2 * len(levels):
         return []
     common = np.median(pairs, axis=0)
@@ -145,7 +145,7 @@ def check_levels(levels: NDArray[np.float64], pairs: NDArray[np.float64]) -> lis
             f"its air is then at {levels[strange[0]]:.0f} HU instead of {np.median(levels):.0f}."
         )
         raise InputRefused("InconsistentRescale", message, _REMEDY)
-    message = f"The darkest part of {len(off)} slices is over {_JUMP:g} HU away from that of the others."
+    message = f"The darkest part of {len(off)} slices is over {_JUMP_HU:g} HU away from that of the others."
     return [Finding("LevelJump", "warning", message, {"slices": [int(i) for i in off]})]
 
 
@@ -200,7 +200,7 @@ def apply_rescale(
         hu = (values.astype(np.int64) * int(slope) + int(intercept)).astype(np.int16)
 
     if padding is not None:
-        hu[padding] = AIR
+        hu[padding] = AIR_HU
     return hu, padding
 
 

@@ -13,13 +13,13 @@ import numpy as np
 
 from ...errors import InputRefused
 from ..load_report import Finding
-from .geometry import MAX_STEP, MIN_SLICES, axes_of, bad_geometry, check_geometry, sort_by_height
+from .geometry import MAX_STEP_MM, MIN_SLICES, axes_of, bad_geometry, check_geometry, sort_by_height
 from .parse import CT_CLASSES
 from .slice_header import SliceHeader
 
 _CT = ("CT", "")
 _STRAY = 3  # so few images are a scout or a reference picture, not a scan
-_HEAD = 150.0  # mm: a taller scan has no advantage over another
+_HEAD_HEIGHT_MM = 150.0  # mm: a taller scan has no advantage over another
 _DIRECTION_TOL = 1e-4
 _FOLDER_REMEDY = "Give the folder that holds only the wanted series."
 
@@ -78,6 +78,21 @@ def choose_series(headers: list[SliceHeader], allow: Collection[str] = ()) -> tu
     InputRefused
         ``NoImages``, ``WrongModality``, ``BadGeometry``, ``AmbiguousSeries``, ``MixedPatients``,
         ``MixedFrameOfReference``.
+
+    Examples
+    --------
+    Two reconstructions of one study, of which the thinner is chosen:
+
+    >>> from dataclasses import replace
+    >>> from data_synth import write_dicom
+    >>> from .parse import parse_file
+    >>> from .slice_header import read_headers
+    >>> hu, affine = np.zeros((20, 4, 4), np.int16), np.eye(4)[[2, 1, 0, 3]]
+    >>> files = write_dicom("thin", hu, affine) + write_dicom("thick", hu[::2], affine * [2, 1, 1, 1])
+    >>> headers = [header for i, file in enumerate(files) for header in read_headers(*parse_file(file, i), i)]
+    >>> chosen, findings = choose_series([replace(header, study="1") for header in headers])
+    >>> len(chosen), [finding.code for finding in findings]
+    (20, ['SeriesChosen', 'SeriesSkipped'])
     """
     # CT images, in groups that belong together
     usable, left = _usable(headers, "wrong_modality" in allow)
@@ -185,6 +200,7 @@ def _candidate(group: list[SliceHeader]) -> Candidate:
         heights = sort_by_height(group)[1]
     except InputRefused:
         return Candidate(group, 1.0, float(len(group)), True, original)
+    # copies at one height do not count
     gaps = np.diff(heights)
     step = float(np.median(gaps[gaps > 1e-3])) if (gaps > 1e-3).any() else 0.0
     return Candidate(group, step, float(heights[-1]) + step, bool(abs(normal[2]) > 0.8), original)
@@ -194,13 +210,13 @@ def _best(candidates: list[Candidate]) -> Candidate:
     """The thinnest axial original scan among those that cover a head; a tie is refused."""
     # tall enough for a head, then axial, original, thin, and with most slices
     enough = [c for c in candidates if len(c.headers) >= MIN_SLICES] or candidates
-    tall = min(max(c.extent for c in enough), _HEAD)
+    tall = min(max(c.extent for c in enough), _HEAD_HEIGHT_MM)
     pool = [c for c in enough if c.extent >= 0.7 * tall]
     pool.sort(key=lambda c: (not c.axial, not c.original, round(c.step, 2), -len(c.headers)))
     best = pool[0]
 
     # others of the same direction must be of the same person and study
-    rivals = [c for c in pool[1:] if c.axial == best.axial and c.step <= MAX_STEP + 0.1]
+    rivals = [c for c in pool[1:] if c.axial == best.axial and c.step <= MAX_STEP_MM + 0.1]
     if rivals:
         _check_one_person([c.headers[0] for c in (best, *rivals)], "folder")
     if any(c.headers[0].study != best.headers[0].study for c in rivals):
@@ -218,8 +234,10 @@ def _best(candidates: list[Candidate]) -> Candidate:
 
 def _is_sharp(kernel: str) -> bool:
     """Whether a kernel's name is one of the makers' for edges: bone, lung, or a high number."""
+    # by its own name
     if any(word in kernel for word in ("BONE", "SHARP", "EDGE", "LUNG", "DETAIL", "ULTRA")):
         return True
+    # by the makers' codes: letters, and a number that rises with sharpness
     letters, digits = kernel[:2].rstrip("0123456789"), "".join(c for c in kernel.split("/")[0] if c.isdigit())
     return bool(digits) and (
         (letters in {"H", "B", "J", "U", "HR", "BR", "HC", "BL"} and int(digits[:2]) >= 55)
@@ -262,6 +280,7 @@ def _check_rest_of_series(chosen: Candidate, others: list[list[SliceHeader]]) ->
     for group in others:
         if group[0].series != first.series or group[0].image_type[:1] != first.image_type[:1]:
             continue
+        # a part without geometry cannot be told from the rest
         if group[0].orientation is None or group[0].spacing is None:
             check_geometry(group)
         if not _close(group[0].orientation, first.orientation):

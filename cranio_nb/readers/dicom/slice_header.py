@@ -136,6 +136,7 @@ def _headers_of(dataset: Dataset, place: PixelPlace | None, file: int) -> list[S
     if "Rows" not in dataset or "Columns" not in dataset:
         return []
     frames = int(dataset.get("NumberOfFrames") or 1)
+    # what a multi-frame file says of all frames, and of each
     shared = _first(dataset, "SharedFunctionalGroupsSequence")
     per_frame = dataset.get("PerFrameFunctionalGroupsSequence") or []
     common = _common(dataset, place, file, frames)
@@ -147,6 +148,7 @@ def _headers_of(dataset: Dataset, place: PixelPlace | None, file: int) -> list[S
 
 
 def _common(dataset: Dataset, place: PixelPlace | None, file: int, frames: int) -> dict[str, Any]:
+    # of bits, the defaults of the standard
     allocated = _int(dataset, "BitsAllocated") or 0
     stored = _int(dataset, "BitsStored") or allocated
     high = _int(dataset, "HighBit")
@@ -182,6 +184,7 @@ def _placement(dataset: Dataset, groups: list[Dataset | None], frame: int) -> di
     def source(sequence: str) -> Dataset:
         return next((item for g in groups if g is not None and (item := _first(g, sequence)) is not None), dataset)
 
+    # a frame's own group goes before the shared one, and both before the file's own elements
     rescale = source("PixelValueTransformationSequence")
     measures = source("PixelMeasuresSequence")
     frame_type = _texts(source("CTImageFrameTypeSequence"), "FrameType")

@@ -6,7 +6,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import SHAPE, STEP, chain, codes, drop, edit, head, refusal, save, series, set_pixels
+from dicom_series import (
+    SHAPE,
+    STEP,
+    as_unsigned_without_rescale,
+    chain,
+    codes,
+    drop,
+    edit,
+    head,
+    refusal,
+    save,
+    series,
+    set_pixels,
+    shift_hu,
+)
 from pydicom.dataset import Dataset
 from pydicom.sequence import Sequence
 from pydicom.uid import generate_uid
@@ -36,21 +50,6 @@ def second_phase(datasets: list[Dataset]) -> None:
         twin.SOPInstanceUID, twin.AcquisitionNumber = generate_uid(), 2
         twin.PixelData = bytes(len(ds.PixelData) - 2) + b"\1\0"
         datasets.append(twin)
-
-
-def shift_hu(by: float, factor: float = 1) -> Callable[[list[Dataset]], None]:
-    def change(datasets: list[Dataset]) -> None:
-        for ds in datasets:
-            stored = np.frombuffer(ds.PixelData, "<u2").reshape(ds.Rows, ds.Columns).astype(float)
-            set_pixels(ds, ((stored - 1024) * factor + by + 8192).astype(int))
-            ds.RescaleIntercept = -8192
-
-    return change
-
-
-def as_unsigned_without_rescale(datasets: list[Dataset]) -> None:
-    for ds in datasets:
-        del ds.RescaleSlope, ds.RescaleIntercept
 
 
 def two_blocks_of_sizes(below: int) -> Callable[[list[Dataset]], None]:
