@@ -100,7 +100,7 @@ print(f"burr hole: Dice {scores.dice(small.patch, burr.truth):.3f}")
 # says how asymmetric this head is.
 
 # %% tags=["nbval-check-output"]
-plane = symmetry.find(bone, openings[0].head_centre)
+plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre)
 print(
     f"{np.degrees(plane.angle):.1f} degrees from the scan's mid-plane, "
     f"{plane.offset:.1f} mm aside"
@@ -336,7 +336,7 @@ check.exercise("8.3", lid)
 # | paper | code | unit |
 # |---|---|---|
 # | convex hull, Fig. 6 | `hull.design`, `hull.paper_options` | |
-# | reflection | `symmetry.find`, `reflection.design` | degrees, mm |
+# | reflection | `symmetry.find_symmetry_plane`, `reflection.design` | degrees, mm |
 # | You et al. | `tetrahedra.extract`, `you.design` | mm |
 # | Table 3 | `truth.table3`, `tables.PAPER_DISTANCES` | voxels |
 #

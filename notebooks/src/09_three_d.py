@@ -33,7 +33,7 @@ from cranio_nb.methods import slicewise, thin_plate
 from cranio_nb.methods.dnurbs.method import method as dnurbs
 from cranio_nb.stages import segmentation
 from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search, radius_map
+from cranio_nb.vault import opening_search, radius_measurement
 
 # %% [markdown]
 # ## Parameters
@@ -64,9 +64,9 @@ true = measure.true_prosthesis(case.truth, bone, openings[0])
 # hole is its middle, and distances from the middle are true, as on a map of the world centred on the pole.
 
 # %% tags=["nbval-check-output"]
-vault = radius_map.look(bone, openings[0])
+vault = radius_measurement.measure_around(bone, openings[0])
 fig, axes = classroom.axes(2, height=3.8)
-half = (len(vault.outer) // 2 + 0.5) * vault.mm
+half = (len(vault.outer) // 2 + 0.5) * vault.step_mm
 maps = {"outer radius (mm)": vault.outer, "thickness (mm)": vault.outer - vault.inner}
 for ax, (name, values) in zip(axes, maps.items(), strict=True):
     beside = np.where(vault.hole, np.nan, values)
@@ -75,7 +75,7 @@ for ax, (name, values) in zip(axes, maps.items(), strict=True):
     ax.set(title=name, xlabel="mm", ylabel="mm")
 alt = "Two maps of the vault around the hole, which is white: outer radius, and thickness."
 n = len(vault.outer)
-classroom.picture(fig, alt, f"{n} x {n} rays, {vault.mm:.2f} mm apart")
+classroom.picture(fig, alt, f"{n} x {n} rays, {vault.step_mm:.2f} mm apart")
 
 # %% [markdown]
 # A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
@@ -393,7 +393,7 @@ classroom.picture(fig, alt, f"w = 0.71: radius {radius.min():.3f} to {radius.max
 #
 # | paper | code | unit |
 # |---|---|---|
-# | the vault around the hole | `chart.look`, `RadialChart` | mm per ray |
+# | the vault around the hole | `chart.look`, `RadiusMap` | mm per ray |
 # | 3D deformable model | `thin_plate.bend`, `thin_plate.design` | mm |
 # | D-NURBS | `sheet.Sheet`, `sheet_motion.relax`, `dnurbs.design` | mm |
 # | Table 3 | `truth.table3` | voxels |

@@ -22,8 +22,8 @@ from ...methods.dnurbs.sheet import Sheet
 from ...methods.dnurbs.sheet_motion import Dynamics, Motion, Setting
 from ...opening import Opening
 from ...prosthesis import Prosthesis
-from ...vault import radius_map, symmetry
-from ...vault.radius_map import RadialChart
+from ...vault import radius_measurement, symmetry
+from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
 from .controls import Slider, View
 from .panel import Panel
@@ -48,7 +48,7 @@ class Scene:
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
         Of every third or fourth ray.
     true : ndarray, shape (M, M)
         Radii of the outer surface with the missing bone in its place, mm; nan where none is known.
@@ -56,25 +56,31 @@ class Scene:
         Outer radii of the other side of the skull.
     """
 
-    vault: RadialChart
+    vault: RadiusMap
     true: Array
     mirrored: Array | None = None
 
 
-def coarse(vault: RadialChart, every: int) -> RadialChart:
+def coarse(vault: RadiusMap, every: int) -> RadiusMap:
     """A chart of every n-th ray, counted from its middle; radii are means of their neighbours."""
     shown = [np.where(vault.hole, np.nan, radius) for radius in (vault.outer, vault.inner)]
     outer, inner = (thin_plate.thinned(radius, every) for radius in shown)
     hole = thin_plate.thinned(vault.hole.astype(float), every) > _ANY
-    return replace(vault, step=vault.step * every, outer=outer, inner=inner, hole=hole)
+    return replace(
+        vault,
+        grid=replace(vault.grid, step_rad=vault.grid.step_rad * every, n=len(outer)),
+        outer=outer,
+        inner=inner,
+        hole=hole,
+    )
 
 
-def look(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
+def look(fine: RadiusMap, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
     """The vault around a hole and, where it is known, the bone that is missing in it."""
     vault = coarse(fine, every)
     if truth is None or truth.patch is None:
         return Scene(vault, np.where(vault.hole, np.nan, vault.outer))
-    whole = radius_map.along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
+    whole = radius_measurement.measure_along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
     return Scene(vault, thin_plate.thinned(whole.outer, every))
 
 
@@ -89,10 +95,12 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
     truth : Prosthesis, optional
         The missing bone with its patch, where it is known (`truth.true_prosthesis`).
     """
-    fine = radius_map.look(bone, opening)
+    fine = radius_measurement.measure_around(bone, opening)
     scene = look(fine, bone, truth, _PLATE)
     try:
-        other = radius_map.along(fine, symmetry.find(bone, opening.head_centre).mirrored(bone))
+        other = radius_measurement.measure_along(
+            fine, symmetry.find_symmetry_plane(bone, opening.head_centre).mirrored(bone)
+        )
         scene = replace(scene, mirrored=coarse(other, _PLATE).outer)
     except InputRefused:  # no plane of symmetry: the third slider has no effect
         pass
@@ -110,7 +118,9 @@ def plate_of(scene: Scene, second: float, third: float, mirror: float) -> Array:
     """Outer radii of the plate in the hole and beside it, shape (M, M), mm; nan elsewhere."""
     vault = scene.vault
     like = scene.mirrored
-    return thin_plate.bend(vault.outer, vault.hole, vault.mm, like=like, second=second, third=third, likeness=mirror)
+    return thin_plate.bend(
+        vault.outer, vault.hole, vault.step_mm, like=like, second=second, third=third, likeness=mirror
+    )
 
 
 def _plate_view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
@@ -153,7 +163,7 @@ def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_]) -> None:
 def _draw_profile(canvas: Canvas, scene: Scene, plate: Array) -> None:
     """Radii along the chart's middle row: bone, truth and plate."""
     vault, row = scene.vault, len(plate) // 2
-    x = (np.arange(len(plate)) - row) * vault.mm
+    x = (np.arange(len(plate)) - row) * vault.step_mm
     near = np.isfinite(plate[row])
     bone = np.where(vault.hole, np.nan, vault.outer)[row]
     seen = np.concatenate([bone[near], scene.true[row][near]])
@@ -204,7 +214,7 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     truth : Prosthesis, optional
         The missing bone with its patch, where it is known (`truth.true_prosthesis`).
     """
-    scene = look(radius_map.look(bone, opening), bone, truth, _SHEET)
+    scene = look(radius_measurement.measure_around(bone, opening), bone, truth, _SHEET)
     run = lru_cache(maxsize=16)(lambda *values: relaxing(scene.vault, *values))
     controls = (
         Slider("wavelength", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
@@ -219,7 +229,7 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     return Panel(controls, lambda step, **values: _sheet_view(scene, run(*values.values()), step), alt=alt, slow=True)
 
 
-def relaxing(vault: RadialChart, wavelength: float, mass: float, damping: float) -> Way:
+def relaxing(vault: RadiusMap, wavelength: float, mass: float, damping: float) -> Way:
     """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps."""
     setting = dnurbs.fit(vault, wavelength=wavelength, tension=0.0, span=_SPAN).settings[0]
     dynamics = Dynamics(mass=mass, damping=damping)
