@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..drawing import figures
+from ..drawing import figures, palette
 from ..drawing.described import described
 from ..errors import InputRefused
 from ..opening import Opening
@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from ..drawing.figures import Axes, Figure
 
 LINES = (
-    (figures.BLUE, "-"),
-    (figures.VERMILLION, "--"),
-    (figures.GREEN, "-."),
-    (figures.PURPLE, ":"),
-    (figures.BLACK, "-"),
+    (palette.BLUE, "-"),
+    (palette.VERMILLION, "--"),
+    (palette.GREEN, "-."),
+    (palette.PURPLE, ":"),
+    (palette.BLACK, "-"),
 )
 """Colour and style of the first, second, ... curve of a picture: told apart without colour as well."""
 
@@ -178,7 +178,7 @@ def show_hu(ax: Axes, hu: NDArray, *, px: float, centre: float = 300.0, width: f
     _label(ax, title)
 
 
-def show_mask(ax: Axes, mask: NDArray[np.bool_], *, px: float, colour: str = figures.BONE, title: str = "") -> None:
+def show_mask(ax: Axes, mask: NDArray[np.bool_], *, px: float, colour: str = palette.BONE, title: str = "") -> None:
     """Draw a mask, shape (R, C), in one colour over what is there; axes in mm."""
     rgba = np.zeros((*mask.shape, 4))
     rgba[mask] = [*(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)), 1.0]
@@ -203,8 +203,8 @@ def show_tangents(ax: Axes, points: ArrayLike, tangents: ArrayLike, *, px: float
     """Draw gap ends as rings and their tangents, both (row, col) of shape (n, 2), as arrows of `length` mm."""
     for point, tangent in zip(np.asarray(points, float) * px, np.asarray(tangents, float), strict=True):
         tip = point + length * tangent
-        ax.annotate("", tip[::-1], point[::-1], arrowprops={"arrowstyle": "-|>", "color": figures.GREEN, "lw": 1.6})
-        ax.plot(*point[::-1], marker="o", ms=6, mfc="white", mec=figures.BLACK)
+        ax.annotate("", tip[::-1], point[::-1], arrowprops={"arrowstyle": "-|>", "color": palette.GREEN, "lw": 1.6})
+        ax.plot(*point[::-1], marker="o", ms=6, mfc="white", mec=palette.BLACK)
 
 
 def zoom(ax: Axes, points: Iterable[ArrayLike], *, px: float, margin: float = 15.0) -> None:

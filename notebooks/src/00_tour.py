@@ -38,7 +38,7 @@
 # %%
 import numpy as np
 
-from cranio_nb.drawing import scene3d, shading
+from cranio_nb.drawing import coarse_skull, scene3d
 from cranio_nb.evaluation import scores
 from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.methods import slicewise
@@ -158,7 +158,7 @@ if case.truth is not None:
     print(f"Dice {score.dice:.3f}, 95 % of the surface within {score.hd95:.2f} mm")
 
 # %% tags=["nbval-check-output"]
-skull = shading.skull_surface(bone)
+skull = coarse_skull.skull_surface(bone)
 alt = "A pale skull seen from its side; the hole is closed by the prosthesis, in blue."
 scene3d.show_meshes(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
 

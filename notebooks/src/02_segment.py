@@ -27,7 +27,7 @@
 import numpy as np
 from scipy import ndimage
 
-from cranio_nb.drawing import shading
+from cranio_nb.drawing import coarse_skull
 from cranio_nb.evaluation import scores
 from cranio_nb.stages import segmentation
 from cranio_nb.teaching import check, classroom, widgets
@@ -93,7 +93,7 @@ if case.phantom is not None:
 
 # %% tags=["nbval-check-output"]
 if case.phantom is not None:
-    area = shading.skull_surface(true).areas.sum()
+    area = coarse_skull.skull_surface(true).areas.sum()
     for level, volume in zip(levels[2:5], volumes[2:5], strict=True):
         extra = 1000 * volume - true.voxels.sum() * true.voxel_volume
         print(f"{level} HU: each surface lies {extra / area:+.2f} mm outward")

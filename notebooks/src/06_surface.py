@@ -75,12 +75,12 @@ print(f"smooth: {len(smooth.faces)} faces, area {smooth.areas.sum() / 100:.1f} c
 # %% tags=["nbval-check-output"]
 nothing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
 towards = openings[0].direction + [0, 0, 0.4]
-figure = figures.view_figure(nothing, raw, towards, px=0.14)
+figure = figures.view_figure(nothing, raw, towards, px_mm=0.14)
 alt = "The raw prosthesis: steps run round it like the contour lines of a map."
 classroom.picture(figure, alt, f"raw, area {raw.areas.sum() / 100:.1f} cm2")
 
 # %% tags=["nbval-check-output"]
-figure = figures.view_figure(nothing, smooth, towards, px=0.14)
+figure = figures.view_figure(nothing, smooth, towards, px_mm=0.14)
 alt = "The same prosthesis, smoothed: the steps are gone, the outline is the same."
 classroom.picture(figure, alt, f"smooth, area {smooth.areas.sum() / 100:.1f} cm2")
 

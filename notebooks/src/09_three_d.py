@@ -26,7 +26,7 @@
 # %%
 import numpy as np
 
-from cranio_nb.drawing import figures
+from cranio_nb.drawing import palette
 from cranio_nb.evaluation import against_truth as measure
 from cranio_nb.evaluation import scores
 from cranio_nb.methods import slicewise, thin_plate
@@ -108,7 +108,7 @@ for order, length in ((2, 2), (2, 10), (3, 2), (3, 10)):
 # %% tags=["nbval-check-output"]
 fig, (ax,) = classroom.axes(height=3.2)
 classroom.plot_lines(ax, x, bridges, xlabel="along the bow (mm)", ylabel="above the truth (mm)")
-ax.axvspan(-25, 25, color=figures.BONE, alpha=0.4)
+ax.axvspan(-25, 25, color=palette.BONE, alpha=0.4)
 alt = (
     "Four bridges minus the true bow, the gap grey: two orders, each smoothing little and much."
 )
@@ -345,7 +345,7 @@ fig, (ax,) = classroom.axes(height=3.0)
 parabola = 75 - x**2 / 150
 lines = {f"order {n}": bridge(parabola, known, n, 1e4) - parabola for n in (2, 3)}
 classroom.plot_lines(ax, x, lines, xlabel="mm", ylabel="above the truth (mm)")
-ax.axvspan(-25, 25, color=figures.BONE, alpha=0.4)
+ax.axvspan(-25, 25, color=palette.BONE, alpha=0.4)
 alt = "Bridges minus a true parabola, the gap grey: order 2 is off in it, order 3 nowhere."
 classroom.picture(fig, alt, f"order 3: {np.abs(lines['order 3']).max():.3f} mm off at most")
 
@@ -376,7 +376,7 @@ for w, (colour, style) in zip((0.3, np.sqrt(0.5), 2.0), classroom.LINES, strict=
         ls=style,
         label=f"w = {w:.2f}",
     )
-ax.plot(*corner.T, "o--", color=figures.BLACK, lw=0.8, label="control points")
+ax.plot(*corner.T, "o--", color=palette.BLACK, lw=0.8, label="control points")
 ax.set(xlabel="mm", ylabel="mm", aspect="equal")
 ax.legend(fontsize=8)
 radius = np.linalg.norm(rational(corner, np.array([1, np.sqrt(0.5), 1]), t), axis=1)

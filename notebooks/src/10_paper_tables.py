@@ -29,8 +29,9 @@ from scipy.spatial import cKDTree
 from skimage.morphology import convex_hull_image
 
 from cranio_nb.curves import ChordFrame
-from cranio_nb.drawing import figures
-from cranio_nb.drawing.shading import Solid, render, skull_surface
+from cranio_nb.drawing import figures, palette
+from cranio_nb.drawing.coarse_skull import skull_surface
+from cranio_nb.drawing.shading import Solid, render
 from cranio_nb.evaluation import against_truth as measure
 from cranio_nb.evaluation import paper_tables, scores
 from cranio_nb.methods import reflection, slicewise, thin_plate
@@ -209,9 +210,9 @@ ends = frame.end_angles(middle.ends[0])
 # %% tags=["nbval-check-output"]
 fig, (ax,) = classroom.axes(height=1.9, width=8.0)
 for curve, line, name in ((middle.start[0], "--", "start"), (middle.curves[0], "-", "at rest")):
-    ax.plot(*(px * frame.to_chord(curve)).T, line, color=figures.BLUE, label=name)
+    ax.plot(*(px * frame.to_chord(curve)).T, line, color=palette.BLUE, label=name)
 for x, angle, along in zip((0, px * frame.length), ends, (9, -9), strict=True):
-    ax.plot([x, x + along], [0, along * np.tan(angle)], color=figures.GREEN, lw=2)
+    ax.plot([x, x + along], [0, along * np.tan(angle)], color=palette.GREEN, lw=2)
 ax.set(xlabel="x (mm)", ylabel="out (mm)", aspect="equal")
 fig.legend(loc="outside right center", fontsize=8)
 alt = "An arch over the x axis from 0 to L; short straight lines are the tangents at its ends."
@@ -331,7 +332,7 @@ IVORY, BLUE = np.array([0.93, 0.91, 0.85]), np.array([0.0, 0.45, 0.7])
 def look(ax, parts, towards, title, px=1.0, shaded=True):
     """Draw meshes with their colours, seen from a direction."""
     solids = [Solid(mesh, colours) for mesh, colours in parts]
-    ax.imshow(render(solids, towards, px=px, shaded=shaded).rgb)
+    ax.imshow(render(solids, towards, px_mm=px, shaded=shaded).rgb)
     ax.set_title(title, fontsize=9)
     ax.set_axis_off()
 

@@ -9,24 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ...drawing.canvas import (
-    BLACK,
-    BONE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    RGB,
-    SKY,
-    VERMILLION,
-    YELLOW,
-    Canvas,
-    Window,
-    round_length,
-    tinted,
-    windowed,
-)
+from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
+from ...drawing.palette import BLACK, BONE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION, YELLOW
+from ...drawing.pixels import RGB, Window, tinted, windowed
 from ...stages.segmentation import BONE_HU, apply_threshold, fill_holes
 from ...volume import Volume
 from .controls import Slider, Switch, View

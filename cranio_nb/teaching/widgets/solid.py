@@ -11,9 +11,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...drawing.canvas import BLUE, GREEN, GREY, ORANGE, RGB, SKY, VERMILLION, Canvas, rgb_of, round_length
+from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
 from ...drawing.figures import colour_scale
+from ...drawing.palette import BLUE, GREEN, GREY, ORANGE, SKY, VERMILLION, rgb_of
+from ...drawing.pixels import RGB
 from ...drawing.shading import Solid, render, view_axes
 from ...errors import InputRefused
 from ...evaluation import scores
@@ -123,7 +125,7 @@ def distance_map(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> Distan
     towards = own.area_vectors.sum(axis=0)
     px = pixel(own, towards, _SIDE - 60)
     values = np.repeat(distances[:, None], 3, axis=1)
-    drawn = render([Solid(own, values)], towards, px=px, shaded=False)
+    drawn = render([Solid(own, values)], towards, px_mm=px, shaded=False)
     return DistanceMap(distances, np.where(np.isfinite(drawn.depth), drawn.rgb[..., 0], np.nan), px)
 
 
@@ -167,7 +169,7 @@ def pixel(mesh: Mesh, towards: ArrayLike, size: int) -> float:
 def _shaded(mesh: Mesh, towards: ArrayLike) -> tuple[RGB, float]:
     px = pixel(mesh, towards, _SIDE - 60)
     solid = Solid(mesh, np.array(rgb_of(ORANGE)) / 255)
-    return (255 * render([solid], towards, px=px).rgb).astype(np.uint8), px
+    return (255 * render([solid], towards, px_mm=px).rgb).astype(np.uint8), px
 
 
 def put_view(canvas: Canvas, rgb: RGB, px: float) -> None:

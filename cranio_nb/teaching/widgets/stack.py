@@ -12,8 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ...drawing.canvas import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, tinted
+from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
+from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
+from ...drawing.pixels import Window, plain, tinted
 from ...methods import slicewise
 from ...opening import Opening
 from ...stages import prosthesis_volume

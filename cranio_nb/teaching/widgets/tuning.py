@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...drawing.canvas import BLACK, BLUE, GREY, Canvas
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BLACK, BLUE, GREY
 from ...methods import slicewise
 from ...pipeline import run
 from ...pipeline.run import TruthCheck

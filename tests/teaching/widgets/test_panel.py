@@ -9,8 +9,10 @@ from PIL import Image
 from scipy import ndimage
 
 from cranio_nb.curves import ChordFrame, GapEnds, cubic
-from cranio_nb.drawing.canvas import BLUE, GREEN, Canvas, Window, rgb_of, round_length, windowed
+from cranio_nb.drawing.canvas import Canvas, round_length
 from cranio_nb.drawing.described import described
+from cranio_nb.drawing.palette import BLUE, GREEN, rgb_of
+from cranio_nb.drawing.pixels import Window, windowed
 from cranio_nb.errors import InputRefused
 from cranio_nb.evaluation import scores
 from cranio_nb.methods import slicewise
