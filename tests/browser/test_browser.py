@@ -128,7 +128,7 @@ def bone_share(frame):
     return float(((red - blue > 6) & (red > 60)).mean())
 
 
-@pytest.mark.parametrize("lesson", ["00_tour", "03_features", "04_balloon"])
+@pytest.mark.parametrize("lesson", ["00_tour", "03_feature_extraction", "04_deformable_model"])
 def test_a_lesson_runs_from_top_to_bottom(open_notebook, lab_server, lesson):
     if not (lab_server[1] / f"{lesson}.ipynb").is_file():
         pytest.skip(f"{lesson} is not built")

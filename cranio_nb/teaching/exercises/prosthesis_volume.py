@@ -1,13 +1,12 @@
-"""Exercises of lessons 05 and 06: the patch and its surface."""
+"""Exercises of lesson 05: the outline of a patch, the patch, partial loss."""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy import ndimage
-from skimage.measure import marching_cubes
 from skimage.morphology import convex_hull_image
 
-from .task import Exercise, different_pixels, largest_difference, small_head
+from .task import Exercise, different_pixels, small_head
 
 _CORNERS = np.ones((3, 3), bool)  # pixels that touch at a corner belong together
 _SIDES = ndimage.generate_binary_structure(2, 1)
@@ -63,37 +62,15 @@ def _with_cavity(bone, min_pixels, touching=_CORNERS):
     return keep[labels]
 
 
-def _meshes():
-    steps = np.indices((18, 18, 18)) - 8.5
-    ball = np.linalg.norm(steps, axis=0) < 6
-    meshes = []
-    for spacing, shift in (((1.0, 1.0, 1.0), 0.0), ((3.0, 1.75, 1.75), 40.0), ((2.5, 0.45, 0.45), -200.0)):
-        vertices, faces, _, _ = marching_cubes(ball.astype(np.float32), 0.5, spacing=spacing, method="lorensen")
-        volume = np.einsum("ij,ij->", vertices[faces[:, 0]], np.cross(vertices[faces[:, 1]], vertices[faces[:, 2]]))
-        meshes.append((vertices.astype(float) + shift, faces if volume > 0 else faces[:, ::-1].copy()))
-    (*_, (vertices, faces)) = meshes
-    return [*meshes[:2], (vertices, faces[:, ::-1].copy())]  # the last one inside out: a negative volume
-
-
-def _parts_of_volume(vertices, faces):
-    a, b, c = (vertices[faces[:, i]] for i in range(3))
-    return np.einsum("ij,ij->i", a, np.cross(b, c))
-
-
-def _voxel_places():
-    index = np.array([[0.0, 0.0, 0.0], [10.0, 4.0, 2.0], [3.5, 90.0, 41.5]])
-    return [(index, np.array(s)) for s in ((3.0, 1.75, 1.75), (2.5, 0.45, 0.45), (1.0, 2.0, 4.0))]
-
-
-SOLID = {
+EXERCISES: dict[str, Exercise] = {
     "5.1": Exercise(
-        _curves,
-        lambda outer, inner: np.concatenate([outer, inner[::-1]]),
-        _outline_error,
-        "mm2",
-        0.01,
-        "an array (n, 2) of (row, col)",
-        (
+        cases=_curves,
+        right=lambda outer, inner: np.concatenate([outer, inner[::-1]]),
+        error=_outline_error,
+        unit="mm2",
+        tolerance=0.01,
+        form="an array (n, 2) of (row, col)",
+        mistakes=(
             (
                 lambda o, i: np.concatenate([o, i]),
                 "The outline crosses itself like a bow tie: walk back along the inner curve.",
@@ -101,21 +78,21 @@ SOLID = {
             (lambda o, i: o, "This closes the outer curve by its chord; the inner curve is missing."),
             (lambda o, i: i, "This closes the inner curve by its chord; the outer curve is missing."),
         ),
-        (
+        hints=(
             "Walk along the outer curve, then back along the inner one.",
             "inner[::-1] is the inner curve from its end.",
             "np.concatenate([outer, inner[::-1]])",
         ),
-        "an outline that goes round once.",
+        praise="an outline that goes round once.",
     ),
     "5.2": Exercise(
-        _regions,
-        lambda region, bone: region & ~bone,
-        different_pixels,
-        "pixels",
-        0.0,
-        "a mask like the ones given",
-        (
+        cases=_regions,
+        right=lambda region, bone: region & ~bone,
+        error=different_pixels,
+        unit="pixels",
+        tolerance=0.0,
+        form="a mask like the ones given",
+        mistakes=(
             (lambda r, b: r, "Bone is still in it: a prosthesis cannot be where the bone is."),
             (
                 lambda r, b: r ^ b,
@@ -124,17 +101,17 @@ SOLID = {
             (lambda r, b: r & b, "This is just the part that must go."),
             (lambda r, b: r | b, "This is the repaired slice; the patch is what is new in it."),
         ),
-        ("What is in the region and not in the bone?", "~bone is everything that is not bone.", "region & ~bone"),
-        "nothing is designed where bone is.",
+        hints=("What is in the region and not in the bone?", "~bone is everything that is not bone.", "region & ~bone"),
+        praise="nothing is designed where bone is.",
     ),
     "5.3": Exercise(
-        _dented,
-        _lost,
-        different_pixels,
-        "pixels",
-        0.0,
-        "a mask like the one given",
-        (
+        cases=_dented,
+        right=_lost,
+        error=different_pixels,
+        unit="pixels",
+        tolerance=0.0,
+        form="a mask like the one given",
+        mistakes=(
             (_with_cavity, "The brain's place is in it: drop the biggest region too."),
             (lambda b, m: _with_cavity(b, m, _SIDES), "The brain's place is in it: drop the biggest region too."),
             (lambda b, m: _lost(b, 1), "Small islands are left: drop regions under min_pixels."),
@@ -156,63 +133,12 @@ SOLID = {
                 "Filling holes finds the cavity, not the dent: use the convex hull.",
             ),
         ),
-        (
+        hints=(
             "convex_hull_image(bone) & ~bone, then label with np.ones((3, 3)).",
             "Count each label; 0 is background.",
             "keep = sizes >= min_pixels; keep[sizes.argmax()] = False; keep[labels]",
         ),
-        "only the dent is left (the paper's Fig. 6d).",
-    ),
-    "6.1": Exercise(
-        _meshes,
-        lambda v, f: _parts_of_volume(v, f).sum() / 6,
-        lambda a, b: largest_difference(a, b) / abs(float(b)),
-        "of the volume",
-        1e-6,
-        "one number",
-        (
-            (lambda v, f: _parts_of_volume(v, f).sum(), "Six times too big: a tetrahedron is a sixth of its box."),
-            (lambda v, f: _parts_of_volume(v, f).sum() / 3, "Twice too much: a tetrahedron is a sixth of its box."),
-            (
-                lambda v, f: abs(_parts_of_volume(v, f).sum()) / 6,
-                "No abs: a mesh turned inside out has a negative volume, and that is how one finds out.",
-            ),
-            (
-                lambda v, f: np.abs(_parts_of_volume(v, f)).sum() / 6,
-                "Keep the signs: faces seen from behind take away.",
-            ),
-            (
-                lambda v, f: -_parts_of_volume(v, f).sum() / 6,
-                "The sign is wrong: a and (b x c), in the order of the face.",
-            ),
-            (lambda v, f: np.prod(np.ptp(v, axis=0)), "This is the box around the mesh."),
-        ),
-        (
-            "Each face and the origin make a tetrahedron.",
-            "Its volume is a . (b x c) / 6, with its sign.",
-            "np.einsum('ij,ij->', a, np.cross(b, c)) / 6",
-        ),
-        "the volume without counting a voxel.",
-    ),
-    "6.2": Exercise(
-        _voxel_places,
-        lambda index, spacing: index * spacing,
-        largest_difference,
-        "mm",
-        1e-9,
-        "an array like the one given",
-        (
-            (lambda i, s: i, "These are still voxels: 23 of them are not 23 mm."),
-            (lambda i, s: i * s[::-1], "The spacing goes with (plane, row, col); do not turn it round."),
-            (lambda i, s: i[:, ::-1] * s, "The columns of the index are turned round: keep (plane, row, col)."),
-            (lambda i, s: (i * s)[:, ::-1], "These are mm, but with their columns turned round: keep the axes given."),
-            (lambda i, s: (i + 0.5) * s, "Half a voxel off: index 0 is the centre of a voxel, and its place is 0 mm."),
-            (lambda i, s: (i - 0.5) * s, "Half a voxel off: index 0 is the centre of a voxel, and its place is 0 mm."),
-            (lambda i, s: i / s, "Divided where it should multiply: mm = voxels x mm per voxel."),
-            (lambda i, s: i * s.mean(), "One mean spacing squashes the head: each axis has its own."),
-        ),
-        ("How many mm is one step along each axis?", "numpy multiplies row by row.", "index * spacing"),
-        "the head has its true proportions.",
+        praise="only the dent is left (the paper's Fig. 6d).",
     ),
 }
-"""Lessons 05 and 06."""
+"""The exercises of lesson 05, by number."""

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from data_synth import Case
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Exercise:
     """One exercise.
 

@@ -62,15 +62,15 @@ def _rational(points, weights, t, *, middle=2):
     return shares @ points / shares.sum(axis=1, keepdims=True)
 
 
-PLATES = {
+EXERCISES: dict[str, Exercise] = {
     "9.1": Exercise(
-        _sizes,
-        _differences,
-        _up_to_sign,
-        "",
-        1e-9,
-        "a matrix of n - order rows and n columns",
-        (
+        cases=_sizes,
+        right=_differences,
+        error=_up_to_sign,
+        unit="",
+        tolerance=1e-9,
+        form="a matrix of n - order rows and n columns",
+        mistakes=(
             (
                 lambda n, order: np.diff(np.eye(n), order),
                 "Rows and columns are exchanged: np.diff works along the last axis unless told axis=0.",
@@ -89,21 +89,21 @@ PLATES = {
                 "This is the second difference, whatever the order.",
             ),
         ),
-        (
+        hints=(
             "Row i of the matrix says which values the i-th difference is made of.",
             "What does np.diff make of the identity matrix?",
             "np.diff(np.eye(n), order, axis=0)",
         ),
-        "constants vanish under order 1, straight lines under 2, parabolas under 3.",
+        praise="constants vanish under order 1, straight lines under 2, parabolas under 3.",
     ),
     "9.2": Exercise(
-        _gaps,
-        _bridge,
-        largest_difference,
-        "mm",
-        1e-4,
-        "one value for every value of f",
-        (
+        cases=_gaps,
+        right=_bridge,
+        error=largest_difference,
+        unit="mm",
+        tolerance=1e-4,
+        form="one value for every value of f",
+        mistakes=(
             (
                 lambda f, known, order, strength: _bridge(f, known, order, strength, held=False, pulled=False),
                 "What stands in the gap is held to as if it were bone: W is 0 there.",
@@ -134,21 +134,21 @@ PLATES = {
             ),
             (_straight, "A straight bridge: it leaves the rim with a kink and smooths nothing."),
         ),
-        (
+        hints=(
             "Set the derivative of sum w (g - f)^2 + strength |D g|^2 to zero: a linear system for g.",
             "W = np.diag(known.astype(float)); the system is (W + strength * D.T @ D) g = W f.",
             "np.linalg.solve(W + strength * D.T @ D, W @ f)",
         ),
-        "bone is smoothed and continued by one and the same solve.",
+        praise="bone is smoothed and continued by one and the same solve.",
     ),
     "9.3": Exercise(
-        _arcs,
-        _rational,
-        largest_difference,
-        "mm",
-        1e-6,
-        "a point (x, y) for every t",
-        (
+        cases=_arcs,
+        right=_rational,
+        error=largest_difference,
+        unit="mm",
+        tolerance=1e-6,
+        form="a point (x, y) for every t",
+        mistakes=(
             (
                 lambda points, weights, t: _bernstein(t) @ points,
                 "The weights are not used: this is a parabola, not a circle.",
@@ -170,12 +170,12 @@ PLATES = {
                 "The middle function is 2 t (1 - t): the three add up to 1.",
             ),
         ),
-        (
+        hints=(
             "A rational point is a weighted mean of the control points.",
             "B = (1 - t)^2, 2 t (1 - t), t^2; numerator sum w_i B_i p_i, denominator sum w_i B_i.",
             "share = B * weights; share @ points / share.sum(axis=1, keepdims=True)",
         ),
-        "with 1, 1 / sqrt 2, 1 every point lies on the circle, which no polynomial can do.",
+        praise="with 1, 1 / sqrt 2, 1 every point lies on the circle, which no polynomial can do.",
     ),
 }
-"""Lesson 09."""
+"""The exercises of lesson 09, by number."""
