@@ -27,13 +27,9 @@
 import numpy as np
 from scipy import ndimage
 
-from cranio_nb.drawing import shading
-from cranio_nb.evaluation import scores
-from cranio_nb.stages import segmentation
-from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search
-from cranio_nb.volume import Volume
-from data_synth import phantom_case
+import cranio_nb as cn
+from cranio_nb.stages import segmentation, surface_reconstruction
+from cranio_nb.teaching import check, classroom, pictures, widgets
 
 # %% [markdown]
 # ## Parameters
@@ -42,7 +38,7 @@ from data_synth import phantom_case
 # |---|---|---|---|
 # | `threshold` | lowest HU of bone | HU | 400 |
 # | `upper` | highest HU of bone | HU | 1000 (we set none) |
-# | `max_hole` | holes up to this area are filled | mm2 in `segment.segment`, px in `segment.fill_holes` | not given |
+# | `max_hole` | holes up to this area are filled | mm2 in `cn.segment`, px in `segmentation.fill_holes` | not given |
 # | `min_part` | loose parts under this share of the skull go | share, e.g. 0.02 | not given |
 #
 # *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
@@ -80,12 +76,13 @@ panel
 
 # %% tags=["nbval-check-output"]
 levels = np.array([200, 300, 400, 500, 625, 800, 1000])
-masks = [segmentation.segment(ct, threshold=level) for level in levels]
+masks = [cn.segment(ct, threshold=level) for level in levels]
 volumes = np.array([m.voxels.sum() * m.voxel_volume / 1000 for m in masks])
 if case.phantom is not None:
-    true = Volume(case.phantom.bone, ct.affine)
+    true = cn.Volume(case.phantom.bone, ct.affine)
     for level, volume, mask in zip(levels, volumes, masks, strict=True):
-        overlap = scores.dice(mask, true)
+        a, b = mask.voxels, true.voxels
+        overlap = 2 * (a & b).sum() / (a.sum() + b.sum())
         print(f"{level:5} HU: {volume:6.1f} cm3, Dice with the true bone {overlap:.3f}")
 
 # %% [markdown]
@@ -93,7 +90,7 @@ if case.phantom is not None:
 
 # %% tags=["nbval-check-output"]
 if case.phantom is not None:
-    area = shading.skull_surface(true).areas.sum()
+    area = surface_reconstruction.extract(true).areas.sum()
     for level, volume in zip(levels[2:5], volumes[2:5], strict=True):
         extra = 1000 * volume - true.voxels.sum() * true.voxel_volume
         print(f"{level} HU: each surface lies {extra / area:+.2f} mm outward")
@@ -120,7 +117,7 @@ if case.phantom is not None:
 
 # %%
 plane = max(
-    opening_search.find_openings(masks[2])[0].planes[0] - 4, 0
+    cn.find_openings(masks[2])[0].planes[0] - 4, 0
 )  # below the hole the ring is closed
 raw = segmentation.threshold_hu(ct.voxels, 700)
 filled = segmentation.fill_holes(raw, max_hole=60 / px**2)  # 60 mm2, in pixels
@@ -128,14 +125,14 @@ added = filled[plane] & ~raw[plane]
 front = np.argwhere(raw[plane])[:1]  # the first bone pixel from the top
 
 # %% tags=["nbval-check-output"]
-fig, (left, right) = classroom.axes(2, height=4.2)
-classroom.show_hu(left, ct.voxels[plane], px=px, title="CT")
-classroom.show_mask(right, raw[plane], px=px)
-classroom.show_mask(right, added, px=px, colour="#D55E00", title="700 HU; filled in red")
+fig, (left, right) = pictures.axes(2, height=4.2)
+pictures.show_hu(left, ct.voxels[plane], px=px, title="CT")
+pictures.show_mask(right, raw[plane], px=px)
+pictures.show_mask(right, added, px=px, colour="#D55E00", title="700 HU; filled in red")
 for ax in (left, right):
-    classroom.zoom(ax, [front], px=px, margin=20)
+    pictures.zoom(ax, [front], px=px, margin=20)
 alt = "Left: the front of a skull in CT. Right: its bone above 700 HU, many small holes filled."
-classroom.picture(fig, alt, f"{added.sum()} pixels filled in the whole of plane {plane}")
+pictures.picture(fig, alt, f"{added.sum()} pixels filled in the whole of plane {plane}")
 
 # %% [markdown]
 # ## A mistake to make once
@@ -167,16 +164,16 @@ print(f"{ndimage.label(tiny, np.ones((3, 3)))[1]} parts if corners connect as we
 # skull: it is another part.
 
 # %% tags=["nbval-check-output"]
-lying = phantom_case("class", couch=True)
-level = np.flatnonzero(lying.implant.any(axis=(1, 2)))[0] - 4
-bright = segmentation.threshold_hu(lying.hu, 400)
+lying = classroom.synthetic("class", couch=True)
+level = np.flatnonzero(lying.truth.voxels.any(axis=(1, 2)))[0] - 4
+bright = segmentation.threshold_hu(lying.ct.voxels, 400)
 kept = segmentation.drop_artefacts(bright)
-fig, (ax,) = classroom.axes(height=4.2, width=5.0)
-classroom.show_mask(ax, bright[level], px=0.9, colour="#D55E00")
-classroom.show_mask(ax, kept[level], px=0.9, title="skull kept, couch dropped (red)")
+fig, (ax,) = pictures.axes(height=4.2, width=5.0)
+pictures.show_mask(ax, bright[level], px=lying.px, colour="#D55E00")
+pictures.show_mask(ax, kept[level], px=lying.px, title="skull kept, couch dropped (red)")
 alt = "A ring of bone, and behind it a curved plate in another colour that is dropped."
 parts = ndimage.label(bright)[1]
-classroom.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} after")
+pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} after")
 
 # %% [markdown]
 # ## Exercises
@@ -218,13 +215,13 @@ def fill_small_holes(mask, max_pixels):
 check.exercise("2.2", fill_small_holes)
 
 # %% tags=["expected"]
-fig, (ax,) = classroom.axes(height=4.0, width=5.0)
+fig, (ax,) = pictures.axes(height=4.0, width=5.0)
 mine = fill_small_holes(raw[plane], 70)
-classroom.show_mask(ax, mine, px=px, colour="#D55E00")
-classroom.show_mask(ax, raw[plane], px=px, title="your filled holes in red")
-classroom.zoom(ax, [front], px=px, margin=20)
+pictures.show_mask(ax, mine, px=px, colour="#D55E00")
+pictures.show_mask(ax, raw[plane], px=px, title="your filled holes in red")
+pictures.zoom(ax, [front], px=px, margin=20)
 alt = "The front of a skull; small spots in its thickness are filled, the brain's place is not."
-classroom.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")
+pictures.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")
 
 # %% [markdown]
 # ## Summary
@@ -235,9 +232,9 @@ classroom.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")
 # | paper | code | unit |
 # |---|---|---|
 # | CT number range [400, 1000] | `threshold`, `upper` | HU |
-# | hole filling | `segment.fill_holes` | px |
-# | search process for artifacts | `segment.drop_artefacts` | |
-# | binary volume | `segment.segment` -> `Volume` of bool | |
+# | hole filling | `segmentation.fill_holes` | px |
+# | search process for artifacts | `segmentation.drop_artefacts` | |
+# | binary volume | `cn.segment` -> `Volume` of bool | |
 #
 # **Further reading.** Otsu, *A threshold selection method from gray-level histograms* (1979). Gonzalez and Woods,
 # *Digital Image Processing*, the chapter on morphology.

@@ -27,16 +27,10 @@
 # %%
 import numpy as np
 
+import cranio_nb as cn
 from cranio_nb.curves import ChordFrame, cubic, spiral
-from cranio_nb.stages import feature_extraction, segmentation
-from cranio_nb.stages.deformable_model import (
-    PAPER_PRESSURE,
-    curvature_pressure,
-    inflate,
-    tangent_pressure,
-)
-from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search
+from cranio_nb.stages import deformable_model, feature_extraction
+from cranio_nb.teaching import check, classroom, pictures, widgets
 
 # %% [markdown]
 # ## Parameters
@@ -54,9 +48,9 @@ from cranio_nb.vault import opening_search
 
 # %%
 case = classroom.load("class")
-bone = segmentation.segment(case.ct)
-opening = opening_search.find_openings(bone)[0]
-plane = classroom.bridged_plane(bone, opening, skip=3, reach=10)
+bone = cn.segment(case.ct)
+opening = cn.find_openings(bone)[0]
+plane = classroom.bridged_plane(bone, opening, skip_px=3, reach_px=10)
 inside = bone.to_voxel(opening.head_centre)[1:]
 
 # %% [markdown]
@@ -163,7 +157,7 @@ def relax(chord, k, *, n=N_SNAXELS, dt=1.0, turn=0):
     """The balloon across a gap in the circle, from the cubic."""
     angles = gap(chord, turn)
     slopes = np.array([[chord, chord * np.tan(t)] for t in angles]) / (n - 1)
-    return inflate(cubic(chord, *angles, n), slopes, pressure=k, dt=dt, max_iter=20_000)
+    return deformable_model.inflate(cubic(chord, *angles, n), slopes, pressure=k, dt=dt, max_iter=20_000)
 
 
 # %% tags=["nbval-check-output"]
@@ -174,7 +168,7 @@ def error(curve, chord):
 
 
 chords = np.array([60, 90, 120, 160])
-paper = [relax(chord, PAPER_PRESSURE) for chord in chords]
+paper = [relax(chord, deformable_model.PAPER_PRESSURE) for chord in chords]
 for chord, made in zip(chords, paper, strict=True):
     true = RADIUS - np.sqrt(RADIUS**2 - chord**2 / 4)
     height, off = made.curve[:, 1].max(), error(made.curve, chord)
@@ -202,7 +196,7 @@ for chord, made in zip(chords, paper, strict=True):
 
 # %%
 def by_tangents(chord, turn=0):
-    k = tangent_pressure(chord, *gap(chord, turn), N_SNAXELS)
+    k = deformable_model.tangent_pressure(chord, *gap(chord, turn), N_SNAXELS)
     return relax(chord, k, turn=turn)
 
 
@@ -215,7 +209,7 @@ def by_spiral(chord):
         * total
         / (N_SNAXELS - 1)
     )
-    return inflate(curve, slopes, pressure=curvature_pressure(total, curvature))
+    return deformable_model.inflate(curve, slopes, pressure=deformable_model.curvature_pressure(total, curvature))
 
 
 # %% tags=["nbval-check-output"]
@@ -231,13 +225,13 @@ for name, values in errors.items():
     print(f"{name:17}", "  ".join(f"{e:5.2f}" for e in values), "px")
 
 # %% tags=["nbval-check-output"]
-fig, (left, right) = classroom.axes(2)
-classroom.plot_lines(left, chords, errors, xlabel="gap L (px)", ylabel="largest error (px)")
+fig, (left, right) = pictures.axes(2)
+pictures.plot_lines(left, chords, errors, xlabel="gap L (px)", ylabel="largest error (px)")
 heights = {name: balloons[2].curve[:, 1] for name, balloons in ways.items()}
-classroom.plot_lines(right, range(21), heights, xlabel="snaxel", ylabel="height (px)")
+pictures.plot_lines(right, range(21), heights, xlabel="snaxel", ylabel="height (px)")
 right.set_title("at rest, gap of 120 px")
 alt = "Left: the paper's error grows to 12 px, the others stay under 1 px. Right: three arches."
-classroom.picture(
+pictures.picture(
     fig, alt, f"largest error of each: {', '.join(f'{max(e):.2f}' for e in errors.values())} px"
 )
 
@@ -346,23 +340,23 @@ assert height > 0, (
 
 # %%
 slopes = frame.length * np.array([[1, np.tan(theta0)], [1, np.tan(theta1)]]) / (N_SNAXELS - 1)
-k_tangent = tangent_pressure(frame.length, theta0, theta1, N_SNAXELS)
+k_tangent = deformable_model.tangent_pressure(frame.length, theta0, theta1, N_SNAXELS)
 arches = {
-    f"{name} ({k:.3f})": case.px * inflate(start, slopes, pressure=k).curve
-    for name, k in (("the paper's k", PAPER_PRESSURE), ("tangent pressure", k_tangent))
+    f"{name} ({k:.3f})": case.px * deformable_model.inflate(start, slopes, pressure=k).curve
+    for name, k in (("the paper's k", deformable_model.PAPER_PRESSURE), ("tangent pressure", k_tangent))
 }
 for truth in case.true_curves(plane)[:1]:
     arches["true bone"] = case.px * frame.to_chord(truth)
 
 # %% tags=["nbval-check-output"]
-fig, (ax,) = classroom.axes(height=4.0)
-for (name, curve), (colour, line) in zip(arches.items(), classroom.LINES, strict=False):
+fig, (ax,) = pictures.axes(height=4.0)
+for (name, curve), (colour, line) in zip(arches.items(), pictures.LINES, strict=False):
     ax.plot(*curve.T, color=colour, ls=line, label=name)
 ax.set(xlabel="along the chord (mm)", ylabel="out of the head (mm)")
 fig.legend(loc="outside upper center", fontsize=8, ncols=3)
 alt = "The paper's arch is much flatter than the true bone, the other a little higher."
 tops = ", ".join(f"{name}: {curve[:, 1].max():.1f} mm high" for name, curve in arches.items())
-classroom.picture(fig, alt, tops)
+pictures.picture(fig, alt, tops)
 
 # %% [markdown]
 # The tangent pressure overshoots here: 6.4 mm high against 5.5 mm. The pressure is right for the tangents it is given;
@@ -413,20 +407,20 @@ def bridge(length, theta0, theta1, n):
     slopes = np.array(
         [[length, length * np.tan(theta0)], [length, length * np.tan(theta1)]]
     ) / (n - 1)
-    return inflate(start, slopes, pressure=tangent_pressure(length, theta0, theta1, n)).curve
+    return deformable_model.inflate(start, slopes, pressure=deformable_model.tangent_pressure(length, theta0, theta1, n)).curve
 
 
 # %% tags=["check", "nbval-check-output"]
 check.exercise("4.3", bridge)
 
 # %% tags=["expected"]
-fig, (ax,) = classroom.axes(height=3.0)
+fig, (ax,) = pictures.axes(height=3.0)
 curves = {f"gap of {c} px": bridge(c, *gap(c), 21)[:, 1] for c in (60, 90, 120, 160)}
-classroom.plot_lines(
+pictures.plot_lines(
     ax, np.linspace(0, 1, 21), curves, xlabel="along the gap (part of L)", ylabel="height (px)"
 )
 alt = "Four arches over one base; the wider the gap the higher, from 2 to 18 px."
-classroom.picture(
+pictures.picture(
     fig, alt, ", ".join(f"{name}: {y.max():.1f} px" for name, y in curves.items())
 )
 

@@ -7,7 +7,7 @@
 # ---
 
 # %% [markdown]
-# # 05 Patch: from curves to voxels
+# # 05 Prosthesis volume: from curves to voxels
 #
 # Two curves cross the gap. Between them lies the missing bone. This lesson fills it, slice by slice, meets slices
 # where no curve is needed, and finds out why it can matter in which direction one slices.
@@ -23,14 +23,11 @@
 
 # %%
 import numpy as np
-from scipy import ndimage
-from skimage.morphology import convex_hull_image
+from skimage import measure, morphology
 
-from cranio_nb.evaluation import paper_tables, scores
-from cranio_nb.methods import slicewise
-from cranio_nb.stages import prosthesis_volume, segmentation
-from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search
+import cranio_nb as cn
+from cranio_nb.stages import prosthesis_volume
+from cranio_nb.teaching import check, classroom, pictures, widgets
 
 # %% [markdown]
 # ## Parameters
@@ -46,19 +43,19 @@ from cranio_nb.vault import opening_search
 
 # %%
 case = classroom.load("class")
-bone, px = segmentation.segment(case.ct), case.px
-openings = opening_search.find_openings(bone)
+bone, px = cn.segment(case.ct), case.px
+openings = cn.find_openings(bone)
 opening = openings[0]
 
 # %% [markdown]
 # ## 1. Between the curves
 #
 # We run the paper's own preset and look at one slice. The outline goes along the outer curve and *back* along the
-# inner one. Inside it, minus the bone, is the patch. `fill.patch` also asks that a piece reaches from one curve to the
+# inner one. Inside it, minus the bone, is the patch. `prosthesis_volume.patch` also asks that a piece reaches from one curve to the
 # other: crumbs that touch only one of them are dropped.
 
 # %% tags=["nbval-check-output"]
-paper = slicewise.design(bone, openings, **slicewise.paper_options(bone))
+paper = cn.design(bone, openings, preset="paper")
 made = paper.working[0].slices  # the slices of the first hole
 bridged = [s for s in made if s.status == "balloon"]
 one = bridged[len(bridged) // 2]
@@ -69,17 +66,17 @@ patch = prosthesis_volume.patch(outer, inner, bone.voxels[plane])
 print(f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without the bone")
 
 # %% tags=["nbval-check-output"]
-fig, (left, right) = classroom.axes(2, height=4.6)
-classroom.show_mask(left, region, px=px, colour="#56B4E9", title="between the curves")
-classroom.show_mask(right, bone.voxels[plane], px=px)
-classroom.show_mask(right, patch, px=px, colour="#56B4E9", title="minus bone: the patch")
+fig, (left, right) = pictures.axes(2, height=4.6)
+pictures.show_mask(left, region, px=px, colour="patch", title="between the curves")
+pictures.show_mask(right, bone.voxels[plane], px=px)
+pictures.show_mask(right, patch, px=px, colour="patch", title="minus bone: the patch")
 for ax in (left, right):
-    classroom.show_curve(ax, outer, px=px, line=0, label="outer")
-    classroom.show_curve(ax, inner, px=px, line=1, label="inner")
-    classroom.zoom(ax, [outer, inner], px=px)
+    pictures.show_curve(ax, outer, px=px, line=0, label="outer")
+    pictures.show_curve(ax, inner, px=px, line=1, label="inner")
+    pictures.zoom(ax, [outer, inner], px=px)
 right.legend(fontsize=8)
 alt = "Two curves cross a gap in the bone; the region between them, with and without bone."
-classroom.picture(fig, alt, f"patch of {patch.sum() * px**2:.0f} mm2")
+pictures.picture(fig, alt, f"patch of {patch.sum() * px**2:.0f} mm2")
 
 # %% [markdown]
 # **Question.** Why must the bone be taken away at all? The curves start at the gap's ends!
@@ -100,22 +97,22 @@ classroom.picture(fig, alt, f"patch of {patch.sum() * px**2:.0f} mm2")
 
 # %% tags=["nbval-check-output"]
 dented = classroom.load("class", defect="partial")
-dent = segmentation.segment(dented.ct)
+dent = cn.segment(dented.ct)
 lost = dented.truth.voxels if dented.truth is not None else dent.voxels
 at = int(lost.sum(axis=(1, 2)).argmax())
-hull = convex_hull_image(dent.voxels[at])
+hull = morphology.convex_hull_image(dent.voxels[at])
 found = prosthesis_volume.partial_loss(dent.voxels[at], min_area=20)
 print(f"{(hull & ~dent.voxels[at]).sum()} px in the hull but not bone; {found.sum()} px kept")
 
 # %% tags=["nbval-check-output"]
-fig, (left, right) = classroom.axes(2, height=4.4)
-classroom.show_mask(
-    left, hull & ~dent.voxels[at], px=px, colour="#E69F00", title="hull minus bone"
+fig, (left, right) = pictures.axes(2, height=4.4)
+pictures.show_mask(
+    left, hull & ~dent.voxels[at], px=px, colour="removed", title="hull minus bone"
 )
-classroom.show_mask(right, dent.voxels[at], px=px)
-classroom.show_mask(right, found, px=px, colour="#56B4E9", title="kept: the patch")
+pictures.show_mask(right, dent.voxels[at], px=px)
+pictures.show_mask(right, found, px=px, colour="patch", title="kept: the patch")
 alt = "Left: all of the hull that is not bone, mostly the inside. Right: the dent alone."
-classroom.picture(fig, alt, f"dent of {found.sum() * px**2:.0f} mm2")
+pictures.picture(fig, alt, f"dent of {found.sum() * px**2:.0f} mm2")
 
 # %% [markdown]
 # **Question.** When does the convex hull give the wrong answer?
@@ -134,10 +131,11 @@ classroom.picture(fig, alt, f"dent of {found.sum() * px**2:.0f} mm2")
 # The record says of each slice how it was done.
 
 # %% tags=["nbval-check-output"]
-counts = paper_tables.count_statuses(paper.record["slices"])
+statuses = [s["status"] for s in paper.record["slices"]]
+counts = {status: statuses.count(status) for status in dict.fromkeys(statuses)}
 print("the paper's preset:", counts)
 if case.truth is not None:
-    score = scores.score(paper.patch, case.truth, bone)
+    score = cn.score(paper.patch, case.truth, bone)
     print(f"Dice {score.dice:.3f}, HD95 {score.hd95:.1f} mm, in bone: {score.overlap} voxels")
     planes = np.flatnonzero(case.truth.voxels.any(axis=(1, 2)))
     print(f"bone was cut in slices {planes[0]} to {planes[-1]}")
@@ -189,7 +187,7 @@ tries |= {f"fans, {n} direction(s)": {"directions": n} for n in (1, 2, 6)}
 for name, options in tries.items():
     designed = slicewise.design(bone, openings, **options)
     if case.truth is not None:
-        s = scores.score(designed.patch, case.truth, bone)
+        s = cn.score(designed.patch, case.truth, bone)
         print(f"{name:20} Dice {s.dice:.3f}, HD95 {s.hd95:.2f} mm, mean {s.assd:.2f} mm")
 
 # %% [markdown]
@@ -225,7 +223,7 @@ for name, options in tries.items():
 # ## A mistake to make once
 #
 # Join outer and inner curve without turning one round, and the outline is a bow tie that crosses itself.
-# (`fill.between` turns the inner curve round itself, so here we turn it once too often.)
+# (`prosthesis_volume.between` turns the inner curve round itself, so here we turn it once too often.)
 
 # %% tags=["raises-exception"]
 bow_tie = prosthesis_volume.between(outer, inner[::-1], bone.shape[1:])
@@ -262,15 +260,15 @@ check.exercise("5.2", new_bone)
 
 # %% [markdown]
 # **Exercise 5.3.** Partial loss, Figure 6 (c) and (d): hull minus bone, without the biggest region and without
-# regions of fewer than `min_pixels`. Pixels that touch at a corner belong to one region: `ndimage.label(...,
-# np.ones((3, 3)))`. (`convex_hull_image` and `ndimage` are imported.)
+# regions of fewer than `min_pixels`. Pixels that touch at a corner belong to one region, as `measure.label` has it.
+# (`measure` and `morphology` of scikit-image are imported.)
 
 
 # %% tags=["solution"]
 def partial_loss(bone, min_pixels):
     """Patch of a closed ring with a dent, as a mask."""
-    labels, n = ndimage.label(convex_hull_image(bone) & ~bone, np.ones((3, 3)))
-    sizes = np.bincount(labels.ravel(), minlength=n + 1)
+    labels = measure.label(morphology.convex_hull_image(bone) & ~bone)
+    sizes = np.bincount(labels.ravel())
     sizes[0] = 0
     keep = sizes >= min_pixels
     keep[sizes.argmax()] = False
@@ -281,13 +279,13 @@ def partial_loss(bone, min_pixels):
 check.exercise("5.3", partial_loss)
 
 # %% tags=["expected"]
-fig, (ax,) = classroom.axes(height=4.2, width=5.0)
-classroom.show_mask(ax, dent.voxels[at], px=px)
-classroom.show_mask(
-    ax, partial_loss(dent.voxels[at], 20), px=px, colour="#56B4E9", title="your patch"
+fig, (ax,) = pictures.axes(height=4.2, width=5.0)
+pictures.show_mask(ax, dent.voxels[at], px=px)
+pictures.show_mask(
+    ax, partial_loss(dent.voxels[at], 20), px=px, colour="patch", title="your patch"
 )
 alt = "A closed ring of bone with a dent in its outside; the dent is filled in blue."
-classroom.picture(fig, alt, f"{partial_loss(dent.voxels[at], 20).sum()} px")
+pictures.picture(fig, alt, f"{partial_loss(dent.voxels[at], 20).sum()} px")
 
 # %% [markdown]
 # ## Summary
@@ -298,9 +296,9 @@ classroom.picture(fig, alt, f"{partial_loss(dent.voxels[at], 20).sum()} px")
 #
 # | paper | code | unit |
 # |---|---|---|
-# | region between the curves | `fill.between` | px |
-# | prosthesis patch, Fig. 5 (b) | `fill.patch` | px |
-# | partial loss, Fig. 6 | `fill.partial_loss` | px |
+# | region between the curves | `prosthesis_volume.between` | px |
+# | prosthesis patch, Fig. 5 (b) | `prosthesis_volume.patch` | px |
+# | partial loss, Fig. 6 | `prosthesis_volume.partial_loss` | px |
 # | prosthesis volume | `Prosthesis.patch` | voxels |
 #
 # **Further reading.** de Berg and others, *Computational Geometry*, the chapters on polygons and convex hulls.

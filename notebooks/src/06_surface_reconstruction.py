@@ -7,7 +7,7 @@
 # ---
 
 # %% [markdown]
-# # 06 Surface: from voxels to something that can be made
+# # 06 Surface reconstruction: from voxels to something that can be made
 #
 # A machine wants triangles, not voxels. Marching cubes makes them, but it makes stairs as well: the paper complains of
 # its own "staircase defect". This lesson makes the surface, smooths it as far as the data allow, and asks whether the
@@ -23,21 +23,12 @@
 # **From the paper:** stage 5, Figure 8, and the staircase of section 4.
 
 # %%
-import tempfile
-from pathlib import Path
-
 import numpy as np
 
-from cranio_nb.drawing import figures
-from cranio_nb.geometry.mesh_check import check_mesh
-from cranio_nb.implant.workshop import workshop
-from cranio_nb.mesh import Mesh
-from cranio_nb.methods import slicewise
-from cranio_nb.output import files
-from cranio_nb.prosthesis import OUTER
-from cranio_nb.stages import segmentation, surface_reconstruction
-from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search
+import cranio_nb as cn
+from cranio_nb.implant import workshop
+from cranio_nb.stages import surface_reconstruction
+from cranio_nb.teaching import check, classroom, pictures, widgets
 
 # %% [markdown]
 # ## Parameters
@@ -52,9 +43,10 @@ from cranio_nb.vault import opening_search
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
-bone = segmentation.segment(case.ct)
-openings = opening_search.find_openings(bone)
-patch = slicewise.design(bone, openings).patch
+bone = cn.segment(case.ct)
+openings = cn.find_openings(bone)
+made = cn.design(bone, openings)
+patch = made.patch
 print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 
 # %% [markdown]
@@ -72,16 +64,12 @@ print(f"raw: {len(raw.faces)} faces, area {raw.areas.sum() / 100:.1f} cm2")
 print(f"smooth: {len(smooth.faces)} faces, area {smooth.areas.sum() / 100:.1f} cm2")
 
 # %% tags=["nbval-check-output"]
-nothing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
 towards = openings[0].direction + [0, 0, 0.4]
-figure = figures.view_figure(nothing, raw, towards, px=0.14)
-alt = "The raw prosthesis: steps run round it like the contour lines of a map."
-classroom.picture(figure, alt, f"raw, area {raw.areas.sum() / 100:.1f} cm2")
-
-# %% tags=["nbval-check-output"]
-figure = figures.view_figure(nothing, smooth, towards, px=0.14)
-alt = "The same prosthesis, smoothed: the steps are gone, the outline is the same."
-classroom.picture(figure, alt, f"smooth, area {smooth.areas.sum() / 100:.1f} cm2")
+fig, panels = pictures.axes(2, height=4.4)
+for ax, (name, mesh) in zip(panels, {"raw": raw, "smooth": smooth}.items(), strict=True):
+    pictures.show_meshes(ax, [(mesh, pictures.BLUE)], towards, title=name, px=0.14)
+alt = "The prosthesis twice: raw with steps like the contour lines of a map; smoothed without."
+pictures.picture(fig, alt, f"area {raw.areas.sum() / 100:.1f} and {smooth.areas.sum() / 100:.1f} cm2")
 
 # %% [markdown]
 # <details>
@@ -98,7 +86,7 @@ classroom.picture(figure, alt, f"smooth, area {smooth.areas.sum() / 100:.1f} cm2
 # ## 2. How far may it move?
 #
 # Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half
-# a voxel along each axis *without contradicting the data*, and not further. `surface.extract` finds the smoothest
+# a voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract` finds the smoothest
 # surface within these bounds and keeps the volume.
 
 # %% tags=["nbval-check-output"]
@@ -145,7 +133,7 @@ for steps in (0, 1, 5, 10, 24, 200):
 # - *manifold*: no open edges, no flipped ones, no pinches: around every point the skin is like one bent sheet of paper.
 
 # %% tags=["nbval-check-output"]
-report = check_mesh(smooth)
+report = cn.check_mesh(smooth)
 print(
     f"open edges {report.n_open_edges}, flipped {report.n_flipped_edges}, "
     f"pinches {report.n_pinches}"
@@ -165,9 +153,11 @@ for material, mass in data.mass_g.items():
     print(f"{material:10} {workshop.DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
 
 # %% tags=["nbval-check-output"]
-path = Path(tempfile.mkdtemp()) / "prosthesis.stl"
-files.write_mesh(smooth, path)
-print(f"{path.name}: {path.stat().st_size} bytes = 84 + 50 x {len(smooth.faces)} faces")
+folder = classroom.scratch_folder()
+for path in cn.save(made, folder):
+    print(path.name)
+size = (folder / "prosthesis.stl").stat().st_size
+print(f"prosthesis.stl: {size} bytes = 84 + 50 x {len(made.mesh.faces)} faces")
 
 # %% [markdown]
 # Note that an STL file knows no unit. Everybody assumes mm; 3MF says so.
@@ -177,9 +167,8 @@ print(f"{path.name}: {path.stat().st_size} bytes = 84 + 50 x {len(smooth.faces)}
 # Give the workshop the outer side only. It looks fine on screen, but it is a skin without an inside:
 
 # %% tags=["raises-exception"]
-sides = surface_reconstruction.face_sides(smooth, bone, openings[0].head_centre)
-skin = Mesh(smooth.vertices, smooth.faces[sides == OUTER])
-files.write_mesh(skin, path)
+skin = made.surface(cn.prosthesis.OUTER)
+cn.save(cn.Prosthesis(skin, made.sides, None, made.method), folder)
 
 # %% [markdown]
 # ## Exercises
@@ -220,9 +209,9 @@ check.exercise("6.2", to_mm)
 #
 # | paper | code | unit |
 # |---|---|---|
-# | marching cubes | `surface.extract(smooth=False)` | mm |
-# | staircase defect | `surface.extract(smooth=True)` | mm |
-# | digital model | `Prosthesis.mesh`, `export.write_mesh` | mm |
+# | marching cubes | `surface_reconstruction.extract(smooth=False)` | mm |
+# | staircase defect | `surface_reconstruction.extract(smooth=True)` | mm |
+# | digital model | `Prosthesis.mesh`, `cn.save` | mm |
 # | top, inner surface | `Prosthesis.surface(OUTER)`, `(INNER)` | mm |
 #
 # **Further reading.** Lorensen and Cline, *Marching cubes*, SIGGRAPH 1987. Gibson, *Constrained elastic surface nets*

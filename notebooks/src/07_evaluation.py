@@ -23,17 +23,11 @@
 
 # %%
 import numpy as np
-from scipy import ndimage
-from scipy.spatial import cKDTree
+from scipy import ndimage, spatial
 
-from cranio_nb.evaluation import paper_tables, scores
-from cranio_nb.methods import slicewise
-from cranio_nb.pipeline.run import check_truth
-from cranio_nb.prosthesis import INNER, OUTER
-from cranio_nb.stages import segmentation
+import cranio_nb as cn
+from cranio_nb.evaluation import against_truth, paper_tables
 from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search
-from cranio_nb.volume import Volume
 
 # %% [markdown]
 # ## Parameters
@@ -45,10 +39,10 @@ from cranio_nb.volume import Volume
 
 # %%
 case = classroom.load("class", needs_truth=True)
-bone, truth = segmentation.segment(case.ct), case.truth
-openings = opening_search.find_openings(bone)
-made = slicewise.design(bone, openings)
-seen = check_truth(made, truth, bone, openings[0])
+bone, truth = cn.segment(case.ct), case.truth
+openings = cn.find_openings(bone)
+made = cn.design(bone, openings)
+seen = against_truth.check_truth(made, truth, bone, openings[0])
 
 # %% [markdown]
 # ## 1. Table 3: distances of nodes
@@ -71,14 +65,14 @@ for whose, table in (("ours", seen.table3), ("the paper's", paper_tables.PAPER_D
 # rim? Switch to the inner side (its numbers are printed too). Is it better or worse?
 
 # %% tags=["nbval-check-output"]
-panel = widgets.evaluation(made, seen.prosthesis)
+panel = widgets.distances(made, seen.prosthesis)
 for side in ("inner", "outer"):
     print(panel.set(side=side).view.line)
 panel
 
 # %% tags=["nbval-check-output"]
-to_bone = cKDTree(bone.to_world(np.argwhere(bone.voxels)))
-for side, code in (("outer", OUTER), ("inner", INNER)):
+to_bone = spatial.cKDTree(bone.to_world(np.argwhere(bone.voxels)))
+for side, code in against_truth.SIDES.items():
     off, far = seen.distances[side], to_bone.query(made.surface(code).vertices)[0]
     worst = far[off > 0.7 * off.max()]
     middle = off[far > 0.7 * far.max()].mean()
@@ -124,10 +118,10 @@ tries = {
 }
 
 # %% tags=["nbval-check-output"]
-to_truth = cKDTree(truth.to_world(np.argwhere(truth.voxels)))
+to_truth = spatial.cKDTree(truth.to_world(np.argwhere(truth.voxels)))
 print("                     Dice   HD95   one way, mm")
 for name, voxels in tries.items():
-    s = scores.score(truth.with_voxels(voxels), truth, bone)
+    s = cn.score(truth.with_voxels(voxels), truth, bone)
     one_way = to_truth.query(truth.to_world(np.argwhere(voxels)))[0].mean()
     print(f"{name:20} {s.dice:.3f} {s.hd95:6.2f} {one_way:8.2f}")
 
@@ -154,7 +148,7 @@ cover = [(np.roll(flipped, s, 2) & bone.voxels).sum() for s in shifts]
 best = shifts[np.argmax(cover)]
 near = ndimage.binary_dilation(openings[0].sheet.voxels, iterations=6)
 mirror = truth.with_voxels(np.roll(flipped, best, 2) & ~bone.voxels & near)
-s = scores.score(mirror, truth, bone)
+s = cn.score(mirror, truth, bone)
 print(f"mirror, shifted by {best} columns: Dice {s.dice:.3f}, HD95 {s.hd95:.2f} mm")
 print(f"our design:                  Dice {seen.score.dice:.3f}, HD95 {seen.score.hd95:.2f} mm")
 
@@ -169,20 +163,20 @@ print(f"our design:                  Dice {seen.score.dice:.3f}, HD95 {seen.scor
 # shape, even the same voxels, and a Dice of 1; the volumes know better:
 
 # %% tags=["raises-exception"]
-nearer = Volume(truth.voxels, truth.affine @ np.diag([0.8, 1, 1, 1]))
-scores.score(nearer, truth, bone)
+nearer = cn.Volume(truth.voxels, truth.affine @ np.diag([0.8, 1, 1, 1]))
+cn.score(nearer, truth, bone)
 
 # %% [markdown]
 # ## Exercises
 #
 # **Exercise 7.1.** HD95 of two sets of points (n, 3) in mm: distances to the nearest point, both ways, joined; the 95th
-# percentile of them. (`cKDTree` is imported.)
+# percentile of them. (`spatial.cKDTree` is imported.)
 
 
 # %% tags=["solution"]
 def hd95(a, b):
     """95th percentile of the distances to the nearest point, both ways, mm."""
-    there, back = cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]
+    there, back = spatial.cKDTree(b).query(a)[0], spatial.cKDTree(a).query(b)[0]
     return np.percentile(np.concatenate([there, back]), 95)
 
 
@@ -212,9 +206,9 @@ check.exercise("7.2", mirrored)
 #
 # | paper | code | unit |
 # |---|---|---|
-# | distance field | `evaluate.surface_distance` | mm |
-# | Min., Max., Mean, StD. | `evaluate.distance_stats` | mm or voxels |
-# | in voxel units | `evaluate.in_voxels` | voxels |
+# | distance field | `scores.surface_distance` | mm |
+# | Min., Max., Mean, StD. | `scores.distance_stats` | mm or voxels |
+# | in voxel units | `scores.in_voxels` | voxels |
 # | similarity by reflection | section 3 above | |
 #
 # **Further reading.** Maier-Hein and others, *Metrics reloaded*, Nature Methods 21 (2024). Li and others, *AutoImplant

@@ -31,9 +31,9 @@ from ...drawing.canvas import (
 )
 from ...stages import feature_extraction as stage
 from ...volume import Volume
-from .bone import SIDE, dress
 from .controls import Slider, View
 from .panel import Panel
+from .parts import SIDE, annotate_slice
 
 _INSET = 254  # px of a close-up
 _AROUND = 22.0  # mm seen around a gap end in a close-up
@@ -116,7 +116,7 @@ def _ground(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatures, NDArr
     rgb = slice_picture(mask, seen)
     canvas.show(rgb, window)
     _draw_lines(canvas, window, seen)
-    dress(canvas, window, part.bone, plane)
+    annotate_slice(canvas, window, part.bone, plane)
     outer_name, inner_name = "outer boundary, B \N{MINUS SIGN} S", "inner boundary, B \N{INTERSECTION} S"
     bounds = [(SKY, "area", outer_name), (ORANGE, "area", inner_name)]
     lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S")]

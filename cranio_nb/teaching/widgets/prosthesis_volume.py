@@ -18,9 +18,9 @@ from ...methods import slicewise
 from ...opening import Opening
 from ...stages import prosthesis_volume
 from ...volume import Volume
-from .bone import SIDE, dress
 from .controls import Choice, Slider, Switch, View
 from .panel import Panel
+from .parts import SIDE, annotate_slice
 
 PRESSURES = ("from the end tangents", "the paper's constant k")
 _WORDS = {
@@ -125,7 +125,7 @@ def patch_view(stack: Stack, plane: int, curves: bool) -> View:
     if curves:
         for curve, line, dash in zip(result.curves, (BLUE, VERMILLION), (None, (8, 4)), strict=False):
             inset.line(window.px(curve), line, width=2.5, dash=dash)
-    dress(inset, window, stack.bone, plane)
+    annotate_slice(inset, window, stack.bone, plane)
     inset.legend(SIDE - 140, 6, [(BLUE, "line", "outer curve"), (VERMILLION, "dash", "inner curve")])
     canvas.inlay(inset, 0, 0)
     _draw_areas(canvas, stack, at)

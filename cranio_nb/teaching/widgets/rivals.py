@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...drawing.canvas import BLACK, BLUE, BONE, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, rgb_of, tinted
+from ...drawing.canvas import BLACK, BLUE, BONE, ORANGE, SKY, VERMILLION, Canvas, Window, plain, rgb_of, tinted
 from ...drawing.shading import Solid, render, view_axes
 from ...evaluation import scores
 from ...methods.you import mesh_to_voxels
@@ -22,10 +22,9 @@ from ...vault import radius_map, symmetry
 from ...vault.radius_map import RadialChart
 from ...vault.symmetry import OuterSurface, SymmetryPlane
 from ...volume import Volume
-from .bone import dress
 from .controls import Slider, View
 from .panel import Panel
-from .solid import coloured
+from .parts import annotate_slice, colour_ramp, coloured
 
 _SIDE = 440  # px
 _TOP = 4.0  # mm: upper end of the scale of residuals
@@ -112,7 +111,7 @@ def _guides_view(bone: Volume, plane: int, fill: FlatFill, lost: NDArray[np.bool
     for mask, colour in ((bone.voxels[plane], BONE), (lost, VERMILLION), (fill.patch, SKY)):
         rgb = tinted(rgb, mask, colour)
     inset.show(rgb, window)
-    dress(inset, window, bone, plane)
+    annotate_slice(inset, window, bone, plane)
     inset.legend(_SIDE - 150, 6, [(SKY, "area", "fill"), (VERMILLION, "area", "missed bone")])
     canvas.inlay(inset, _SIDE, 0)
     rim = fill.made.outer_rim.points
@@ -175,10 +174,7 @@ def _mirror_view(
         (side - 12, side / 2, "L"),
     ):
         canvas.text(left + x, top + y, letter, size=14, anchor="mm", halo=True)
-    ramp = np.broadcast_to(np.linspace(0, _TOP, side, dtype=np.float32), (14, side))
-    canvas.place(coloured(ramp, _TOP), left, _SIDE - 46)
-    canvas.text(left, _SIDE - 12, "0 mm", size=12, colour=GREY)
-    canvas.text(left + side, _SIDE - 12, f"{_TOP:g} mm or more", size=12, colour=GREY, anchor="rs")
+    colour_ramp(canvas, left, _SIDE - 46, side, _TOP)
     known = residual[np.isfinite(residual)]
     line = "Turned by {turn:g} and leaning by {lean:g} degrees, shifted by {shift:g} mm: ".format(**move)
     if not len(known):
@@ -203,7 +199,7 @@ def _mirrored_slice(bone: Volume, mirror: SymmetryPlane, plane: int) -> Canvas:
     rows = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
     if len(rows):
         canvas.line(window.px(np.column_stack([rows, side[rows].argmax(axis=1) - 0.5])), BLACK, width=1.5, dash=(8, 5))
-    dress(canvas, window, bone, plane)
+    annotate_slice(canvas, window, bone, plane)
     entries = [(BONE, "area", "both"), (ORANGE, "area", "bone"), (SKY, "area", "mirror")]
     canvas.legend(110, 170, [*entries, (BLACK, "dash", "plane")])  # within the ring of bone
     return canvas

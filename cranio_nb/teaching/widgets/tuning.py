@@ -20,8 +20,9 @@ from ...prosthesis import Prosthesis
 from ...vault import opening_search
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
+from .evaluation import DistanceMap, distance_map
 from .panel import Panel
-from .solid import DistanceMap, coloured, distance_map, put_view
+from .parts import coloured, put_view
 
 if TYPE_CHECKING:
     from data_synth import Case

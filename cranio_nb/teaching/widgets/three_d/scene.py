@@ -1,0 +1,65 @@
+"""What both panels of lesson 09 show a surface against: the vault around a hole, and the bone missing in it.
+
+Frame: radius map (v, u) with radii in mm, on every third or fourth ray only, so that a picture follows the hand.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....methods import thin_plate
+from ....prosthesis import Prosthesis
+from ....vault import radius_map
+from ....vault.radius_map import RadialChart
+from ....volume import Volume
+
+SIDE, WIDE = 440, 460  # px: the square at the left, and the chart beside it
+_ANY = 1e-9  # a mean above this has something in it; sums of zeros may be a little off
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What both panels look at.
+
+    Parameters
+    ----------
+    vault : RadialChart
+        Of every third or fourth ray.
+    true : ndarray, shape (M, M)
+        Radii of the outer surface with the missing bone in its place, mm; nan where none is known.
+    mirrored : ndarray, shape (M, M), or None
+        Outer radii of the other side of the skull.
+    """
+
+    vault: RadialChart
+    true: Array
+    mirrored: Array | None = None
+
+
+def coarse(vault: RadialChart, every: int) -> RadialChart:
+    """A chart of every n-th ray, counted from its middle; radii are means of their neighbours."""
+    shown = [np.where(vault.hole, np.nan, radius) for radius in (vault.outer, vault.inner)]
+    outer, inner = (thin_plate.thinned(radius, every) for radius in shown)
+    hole = thin_plate.thinned(vault.hole.astype(float), every) > _ANY
+    return replace(vault, step=vault.step * every, outer=outer, inner=inner, hole=hole)
+
+
+def look(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
+    """The vault around a hole and, where it is known, the bone that is missing in it."""
+    vault = coarse(fine, every)
+    if truth is None or truth.patch is None:
+        return Scene(vault, np.where(vault.hole, np.nan, vault.outer))
+    whole = radius_map.along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
+    return Scene(vault, thin_plate.thinned(whole.outer, every))
+
+
+def error_line(off: Array) -> str:
+    """Mean with its sign, root mean square and maximum of errors of a radius."""
+    off = off[np.isfinite(off)]
+    mean = f"{abs(off.mean()):.2f} mm too {'high' if off.mean() > 0 else 'deep'} on average"
+    return f"{mean}, rms {np.sqrt((off**2).mean()):.2f} mm, {np.abs(off).max():.2f} mm at most"
