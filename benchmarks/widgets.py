@@ -96,8 +96,8 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     yield "features: skip", measure(seen, "skip", [1.0, 2.5, 4.0, 5.5], repeats)
     yield "features: reach", measure(seen, "reach", [6.0, 9.0, 12.0, 15.0], repeats)
     yield "features: slice, all new", measure(widgets.features(bone, plane), "plane", list(range(20, 60)), repeats)
-    ends, _ = feature_extraction.gap_ends(
-        feature_extraction.slice_features(bone.voxels[plane]), one.sheet.voxels[plane], skip=4.5 / px
+    ends, _ = feature_extraction.find_gap_ends(
+        feature_extraction.extract_features(bone.voxels[plane]), one.sheet.voxels[plane], skip_px=4.5 / px
     )
     inside = bone.to_voxel(one.head_centre)[1:]
     ball = widgets.balloon(ends, inside, background=bone.voxels[plane], px=px)

@@ -218,7 +218,7 @@ def _skeleton_boundaries(
     """Outer and inner boundary, (row, col) in mm, of a plane of the scan; None where it has no skeleton."""
     plane = round(float(bone.to_voxel(frame[0])[0]))
     try:
-        seen = feature_extraction.slice_features(bone.voxels[plane])
+        seen = feature_extraction.extract_features(bone.voxels[plane])
     except feature_extraction.SliceProblem:
         return None
     return seen.outer * unit, seen.inner * unit

@@ -54,11 +54,11 @@ def show(bone: Volume, made: Prosthesis) -> Scene:
 
     Examples
     --------
-    >>> from cranio_nb.stages.surface_reconstruction import extract
+    >>> from cranio_nb.stages.surface_reconstruction import extract_surface
     >>> cube = np.zeros((12, 12, 12), bool)
     >>> cube[4:8, 4:8, 4:8] = True
     >>> skull, patch = Volume(~cube, np.eye(4)), Volume(cube, np.eye(4))
-    >>> made = Prosthesis(extract(patch), np.zeros(0, np.uint8), patch, "by hand")
+    >>> made = Prosthesis(extract_surface(patch), np.zeros(0, np.uint8), patch, "by hand")
     >>> show(skull, made).line  # doctest: +ELLIPSIS
     '3-D scene: skull, prosthesis (by hand) (...'
     """

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry import face_sides
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import surface_reconstruction
@@ -52,7 +53,7 @@ def assemble(
         JSON-able facts beside version and seconds.
     """
     worn = bone.with_voxels(patch)
-    mesh = surface_reconstruction.extract(worn, smooth=options["smooth"])
-    sides = surface_reconstruction.face_sides(mesh, bone, openings[0].head_centre)
+    mesh = surface_reconstruction.extract_surface(worn, smooth=options["smooth"])
+    sides = face_sides.label_faces(mesh, bone, openings[0].head_centre)
     facts = {"version": version("cranio-nb"), "seconds": time.perf_counter() - began, **(record or {})}
     return Prosthesis(mesh, sides, worn, method, options, facts, tuple(working))

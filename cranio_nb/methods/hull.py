@@ -29,6 +29,7 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from ..errors import NoOpening
+from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import prosthesis_volume
@@ -87,7 +88,7 @@ def design(
     axial : bool
         Hulls of the slices along the planes of the scan, as the paper; otherwise hulls in space.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -127,7 +128,7 @@ def _in_space(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
     outer, inner = radius_map.thickened(vault, outer, inner)
     piece = radius_map.voxelise(vault, outer, inner, bone)
-    return HullDesign(one, vault, outer, inner), prosthesis_volume.solid_piece(piece, one.sheet, bone)
+    return HullDesign(one, vault, outer, inner), voxel_pieces.keep_solid_piece(piece, one.sheet, bone)
 
 
 def _hull_radius(vault: RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -165,7 +166,7 @@ def _by_slices(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_
         piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
         entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
     nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(one, vault, nothing, nothing, tuple(entries)), prosthesis_volume.solid_piece(
+    return HullDesign(one, vault, nothing, nothing, tuple(entries)), voxel_pieces.keep_solid_piece(
         piece, one.sheet, bone
     )
 
@@ -193,7 +194,7 @@ def _slice(
     if not cone.any():
         return nothing, "outside the hole"
     if len(hits) == _RAYS:
-        return prosthesis_volume.partial_loss(bone, min_area=min_area, region=near) & cone, "closed ring"
+        return prosthesis_volume.fill_partial_loss(bone, min_area_px=min_area, region=near) & cone, "closed ring"
     hits = hits[~rim]
     if len(hits) < _RAYS / 2:  # their hull may not hold the inside
         return nothing, "no ring of bone in this slice"

@@ -32,9 +32,9 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from ..errors import InputRefused
+from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prosthesis import Prosthesis
-from ..stages import prosthesis_volume
 from ..vault import opening_search, radius_map, symmetry
 from ..vault.radius_map import RadialChart
 from ..vault.ray_grid import extended
@@ -105,7 +105,7 @@ def design(
     fit_rim : bool
         Bend the mirrored surfaces smoothly to meet the bone around the hole, nowhere thinner than sound bone near it.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -138,7 +138,7 @@ def design(
     for part in made:
         if np.isfinite(part.outer).any():
             piece = radius_map.voxelise(part.own, part.outer, part.inner, bone)
-            patch |= prosthesis_volume.solid_piece(piece, part.opening.sheet, bone)
+            patch |= voxel_pieces.keep_solid_piece(piece, part.opening.sheet, bone)
     if not patch.any():
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
     tell("surface", 0.9)

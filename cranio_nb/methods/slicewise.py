@@ -22,6 +22,7 @@ from scipy import ndimage
 
 from ..curves import ChordFrame, GapEnds, Points, cubic, spiral
 from ..errors import NoOpening
+from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import deformable_model, feature_extraction, prosthesis_volume
@@ -91,7 +92,7 @@ def paper_options(bone: Volume) -> dict[str, Any]:
     px = float(bone.spacing[1:].mean())
     return {
         "axial": True,
-        "skip": feature_extraction.PAPER_SKIP * px,
+        "skip": feature_extraction.PAPER_SKIP_PX * px,
         "reach": 10.0 * px,
         "pressure": deformable_model.PAPER_PRESSURE,
         "n_snaxels": 21,
@@ -139,11 +140,11 @@ def design(
     n_snaxels : int
         Points of a balloon, ends included.
     tension, rigidity, dt, tol, max_iter
-        As for `balloon.inflate`.
+        As for `deformable_model.inflate`.
     coupling : float
         Standard deviation in mm over which tangents are shared between neighbouring slices of a fan; 0 for none.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -173,7 +174,7 @@ def design(
         else:
             made, piece = _fanned(bone, one, directions, skip, reach, coupling, curve)
         working += made
-        patch |= prosthesis_volume.main_piece(piece, one.sheet.voxels)
+        patch |= voxel_pieces.keep_main_piece(piece, one.sheet.voxels)
     if not patch.any():
         raise NoOpening("NothingBridged", "No slice of the opening could be bridged.", "Try another slicing.")
     tell("surface", 0.9)
@@ -198,9 +199,9 @@ def _axial(
     near = ndimage.binary_dilation(opening.any(axis=0), iterations=int(np.ceil(3 / px)))
     for s in results:
         if s.status == "hull":
-            filled = prosthesis_volume.partial_loss(slices[s.plane], min_area=4 / px**2, region=near)
+            filled = prosthesis_volume.fill_partial_loss(slices[s.plane], min_area_px=4 / px**2, region=near)
         elif s.curves.size:
-            filled = prosthesis_volume.patch(s.curves[0], s.curves[1], slices[s.plane])
+            filled = prosthesis_volume.fill_gap(s.curves[0], s.curves[1], slices[s.plane])
         else:
             continue
         patch[planes.start + s.plane] = filled
@@ -261,11 +262,11 @@ def _by_skeleton(slices: NDArray[np.bool_], opening: NDArray[np.bool_], skip: fl
     results = []
     for plane in range(len(slices)):
         try:
-            seen = feature_extraction.slice_features(slices[plane])
+            seen = feature_extraction.extract_features(slices[plane])
             if seen.closed:
                 results.append(SliceResult(plane, "hull", "closed ring"))
                 continue
-            ends = feature_extraction.gap_ends(seen, opening[plane], skip=skip, reach=reach)
+            ends = feature_extraction.find_gap_ends(seen, opening[plane], skip_px=skip, reach_px=reach)
             results.append(SliceResult(plane, "balloon", ends=ends))
         except feature_extraction.SliceProblem as problem:
             results.append(SliceResult(plane, "skipped", problem.message))

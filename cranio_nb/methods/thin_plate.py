@@ -40,11 +40,11 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from ..errors import InputRefused, NoOpening
+from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prior import file as prior_file
 from ..prior.shape_prior import Prior, expect
 from ..prosthesis import Prosthesis
-from ..stages import prosthesis_volume
 from ..vault import opening_search, radius_map, symmetry
 from ..vault.radius_map import RadialChart
 from ..vault.ray_grid import extended
@@ -115,7 +115,7 @@ def design(
     prior : str
         File made by `cranio-nb prior learn`: the plate is then held to what intact skulls let expect. Empty for none.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -304,7 +304,7 @@ def _piece(plate: Plate, one: Opening, bone: Volume) -> NDArray[np.bool_]:
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
     outer, inner = radius_map.thickened(plate.chart, plate.outer, plate.inner)
-    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), one.sheet.voxels)
+    return voxel_pieces.keep_main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), one.sheet.voxels)
 
 
 def thinned(values: Array, nodes: int) -> Array:

@@ -117,7 +117,7 @@ def run_design(
     mask : bool, optional
         As for `read_ct`: True takes every nonzero voxel as bone. By default data of 0 and 1 are a mask.
     threshold : float, optional
-        Lowest HU of bone; `segment.BONE_HU` when not given.
+        Lowest HU of bone; `segmentation.BONE_HU` when not given.
     planes : tuple of int, optional
         First and last plane (both included): only what lies between them is closed.
     truth : path, optional

@@ -203,7 +203,7 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: f
         Bool mask.
     opening : Opening
     skip_px, reach_px : float
-        As for `feature_extraction.gap_ends`, px.
+        As for `feature_extraction.find_gap_ends`, px.
 
     Returns
     -------
@@ -218,8 +218,8 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: f
     first, end = opening.planes
     for plane in sorted(range(first, end), key=lambda p: abs(p - (first + end) // 2)):
         with suppress(feature_extraction.SliceProblem):
-            seen = feature_extraction.slice_features(bone.voxels[plane])
-            feature_extraction.gap_ends(seen, opening.sheet.voxels[plane], skip=skip_px, reach=reach_px)
+            seen = feature_extraction.extract_features(bone.voxels[plane])
+            feature_extraction.find_gap_ends(seen, opening.sheet.voxels[plane], skip_px=skip_px, reach_px=reach_px)
             return plane
     raise InputRefused(
         "NoAxialGap",

@@ -105,10 +105,10 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10
 follow = {"skip_px": 3, "reach_px": 10}
 plane = classroom.bridged_plane(bone, openings[0], **follow)  # a slice with both ends
-seen = feature_extraction.slice_features(
+seen = feature_extraction.extract_features(
     bone.voxels[plane]
 )  # the bone's boundary and middle line
-outer, inner = feature_extraction.gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
+outer, inner = feature_extraction.find_gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
 # any point in the head: the balloon must know which way is out
 inside = bone.to_voxel(openings[0].head_centre)[1:]
 player = widgets.balloon(outer, inside, background=bone.voxels[plane], px=case.px)
@@ -216,7 +216,7 @@ check.exercise("0.2", dice)
 # |---|---|---|
 # | CT number | `ct.voxels` | HU |
 # | bone | `cn.segment` | mask |
-# | end points, tangents | `feature_extraction.gap_ends` -> `GapEnds` | px |
+# | end points, tangents | `feature_extraction.find_gap_ends` -> `GapEnds` | px |
 # | balloon | `deformable_model.inflate` | px |
 # | prosthesis volume | `Prosthesis.patch` | mask |
 # | digital model | `Prosthesis.mesh` | mm |

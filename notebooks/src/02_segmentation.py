@@ -90,7 +90,7 @@ if case.phantom is not None:
 
 # %% tags=["nbval-check-output"]
 if case.phantom is not None:
-    area = surface_reconstruction.extract(true).areas.sum()
+    area = surface_reconstruction.extract_surface(true).areas.sum()
     for level, volume in zip(levels[2:5], volumes[2:5], strict=True):
         extra = 1000 * volume - true.voxels.sum() * true.voxel_volume
         print(f"{level} HU: each surface lies {extra / area:+.2f} mm outward")
@@ -119,8 +119,8 @@ if case.phantom is not None:
 plane = max(
     cn.find_openings(masks[2])[0].planes[0] - 4, 0
 )  # below the hole the ring is closed
-raw = segmentation.threshold_hu(ct.voxels, 700)
-filled = segmentation.fill_holes(raw, max_hole=60 / px**2)  # 60 mm2, in pixels
+raw = segmentation.apply_threshold(ct.voxels, 700)
+filled = segmentation.fill_holes(raw, max_hole_px=60 / px**2)  # 60 mm2, in pixels
 added = filled[plane] & ~raw[plane]
 front = np.argwhere(raw[plane])[:1]  # the first bone pixel from the top
 
@@ -166,7 +166,7 @@ print(f"{ndimage.label(tiny, np.ones((3, 3)))[1]} parts if corners connect as we
 # %% tags=["nbval-check-output"]
 lying = classroom.synthetic("class", couch=True)
 level = np.flatnonzero(lying.truth.voxels.any(axis=(1, 2)))[0] - 4
-bright = segmentation.threshold_hu(lying.ct.voxels, 400)
+bright = segmentation.apply_threshold(lying.ct.voxels, 400)
 kept = segmentation.drop_artefacts(bright)
 fig, (ax,) = pictures.axes(height=4.2, width=5.0)
 pictures.show_mask(ax, bright[level], px=lying.px, colour="#D55E00")

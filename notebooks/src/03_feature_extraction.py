@@ -60,7 +60,7 @@ mask, px = bone.voxels[plane], case.px
 # outer or the inner one?
 
 # %% tags=["nbval-check-output"]
-seen = feature_extraction.slice_features(mask)
+seen = feature_extraction.extract_features(mask)
 fig, (left, right) = pictures.axes(2, height=4.4)
 pictures.show_mask(left, mask, px=px, title="bone, spine, hull")
 spine = seen.skeleton[0]
@@ -101,7 +101,7 @@ row, col = np.mgrid[-30:30, -30:30]
 bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) <= 5)
 
 # %% tags=["nbval-check-output"]
-raw, kept = classroom.skeleton(bar), feature_extraction.slice_features(bar).skeleton[0]
+raw, kept = classroom.skeleton(bar), feature_extraction.extract_features(bar).skeleton[0]
 fig, (ax,) = pictures.axes(height=3.6, width=6.0)
 pictures.show_mask(ax, bar, px=px, title="one end of a bar, cut squarely")
 pictures.show_points(ax, raw, px=px, colour="#D55E00", marker="s", label="raw skeleton")
@@ -159,9 +159,9 @@ inside = bone.to_voxel(opening.head_centre)[1:]
 
 def measured(plane, skip, reach):
     """Length of the gap (px) and its end angles (degrees), as found in a slice."""
-    seen = feature_extraction.slice_features(bone.voxels[plane])
+    seen = feature_extraction.extract_features(bone.voxels[plane])
     hole = opening.sheet.voxels[plane]
-    outer, _ = feature_extraction.gap_ends(seen, hole, skip=skip, reach=reach)
+    outer, _ = feature_extraction.find_gap_ends(seen, hole, skip_px=skip, reach_px=reach)
     frame = cn.curves.ChordFrame.of(outer, inside)
     return frame.length, np.degrees(frame.end_angles(outer))
 
@@ -228,8 +228,8 @@ for skip, reach in settings:
 # missing, or nothing. A closed ring has no ends, and the package says so. (Lesson 05 has the paper's answer for these.)
 
 # %% tags=["raises-exception"]
-closed = feature_extraction.slice_features(bone.voxels[opening.planes[0] - 4])
-feature_extraction.gap_ends(closed)
+closed = feature_extraction.extract_features(bone.voxels[opening.planes[0] - 4])
+feature_extraction.find_gap_ends(closed)
 
 # %% [markdown]
 # ## Exercises
@@ -296,7 +296,7 @@ check.exercise("3.3", arc_length)
 # | skeleton | `SliceFeatures.skeleton` | px |
 # | S | `SliceFeatures.hull` | half-planes |
 # | B - S, B and S | `.outer`, `.inner` | px |
-# | 10 points | `feature_extraction.PAPER_SKIP` | px |
+# | 10 points | `feature_extraction.PAPER_SKIP_PX` | px |
 # | theta0, theta1 | `ChordFrame.end_angles` | rad |
 #
 # **Further reading.** Zhang and Suen, *A fast parallel algorithm for thinning digital patterns*, CACM 27 (1984).

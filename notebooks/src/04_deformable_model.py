@@ -66,8 +66,8 @@ inside = bone.to_voxel(opening.head_centre)[1:]
 # $$c(s) = \bigl(Ls,\; L(\tan\theta_0+\tan\theta_1)s^3 - L(2\tan\theta_0+\tan\theta_1)s^2 + L\tan\theta_0\, s\bigr)$$
 
 # %% tags=["nbval-check-output"]
-seen = feature_extraction.slice_features(bone.voxels[plane])
-outer, inner = feature_extraction.gap_ends(seen, opening.sheet.voxels[plane], skip=3, reach=10)
+seen = feature_extraction.extract_features(bone.voxels[plane])
+outer, inner = feature_extraction.find_gap_ends(seen, opening.sheet.voxels[plane], skip_px=3, reach_px=10)
 frame = ChordFrame.of(outer, inside)
 theta0, theta1 = frame.end_angles(outer)
 start = cubic(frame.length, theta0, theta1, 21)

@@ -51,7 +51,7 @@ opening = openings[0]
 # ## 1. Between the curves
 #
 # We run the paper's own preset and look at one slice. The outline goes along the outer curve and *back* along the
-# inner one. Inside it, minus the bone, is the patch. `prosthesis_volume.patch` also asks that a piece reaches from one curve to the
+# inner one. Inside it, minus the bone, is the patch. `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the
 # other: crumbs that touch only one of them are dropped.
 
 # %% tags=["nbval-check-output"]
@@ -61,8 +61,8 @@ bridged = [s for s in made if s.status == "balloon"]
 one = bridged[len(bridged) // 2]
 plane = one.plane + max(opening.planes[0] - 2, 0)  # the slices begin two planes below the hole
 outer, inner = one.curves
-region = prosthesis_volume.between(outer, inner, bone.shape[1:])
-patch = prosthesis_volume.patch(outer, inner, bone.voxels[plane])
+region = prosthesis_volume.pixels_between(outer, inner, bone.shape[1:])
+patch = prosthesis_volume.fill_gap(outer, inner, bone.voxels[plane])
 print(f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without the bone")
 
 # %% tags=["nbval-check-output"]
@@ -101,7 +101,7 @@ dent = cn.segment(dented.ct)
 lost = dented.truth.voxels if dented.truth is not None else dent.voxels
 at = int(lost.sum(axis=(1, 2)).argmax())
 hull = morphology.convex_hull_image(dent.voxels[at])
-found = prosthesis_volume.partial_loss(dent.voxels[at], min_area=20)
+found = prosthesis_volume.fill_partial_loss(dent.voxels[at], min_area_px=20)
 print(f"{(hull & ~dent.voxels[at]).sum()} px in the hull but not bone; {found.sum()} px kept")
 
 # %% tags=["nbval-check-output"]
@@ -223,10 +223,10 @@ for name, options in tries.items():
 # ## A mistake to make once
 #
 # Join outer and inner curve without turning one round, and the outline is a bow tie that crosses itself.
-# (`prosthesis_volume.between` turns the inner curve round itself, so here we turn it once too often.)
+# (`prosthesis_volume.pixels_between` turns the inner curve round itself, so here we turn it once too often.)
 
 # %% tags=["raises-exception"]
-bow_tie = prosthesis_volume.between(outer, inner[::-1], bone.shape[1:])
+bow_tie = prosthesis_volume.pixels_between(outer, inner[::-1], bone.shape[1:])
 agree = (bow_tie & region).sum() / region.sum()
 assert agree == 1, f"only {agree:.0%} of the region is filled: the outline is a bow tie"
 
@@ -296,9 +296,9 @@ pictures.picture(fig, alt, f"{partial_loss(dent.voxels[at], 20).sum()} px")
 #
 # | paper | code | unit |
 # |---|---|---|
-# | region between the curves | `prosthesis_volume.between` | px |
-# | prosthesis patch, Fig. 5 (b) | `prosthesis_volume.patch` | px |
-# | partial loss, Fig. 6 | `prosthesis_volume.partial_loss` | px |
+# | region between the curves | `prosthesis_volume.pixels_between` | px |
+# | prosthesis patch, Fig. 5 (b) | `prosthesis_volume.fill_gap` | px |
+# | partial loss, Fig. 6 | `prosthesis_volume.fill_partial_loss` | px |
 # | prosthesis volume | `Prosthesis.patch` | voxels |
 #
 # **Further reading.** de Berg and others, *Computational Geometry*, the chapters on polygons and convex hulls.

@@ -58,8 +58,8 @@ print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 # **Predict.** Planes are 2.5 mm apart, pixels 0.9 mm. How high will the stairs be?
 
 # %% tags=["nbval-check-output"]
-raw = surface_reconstruction.extract(patch, smooth=False)
-smooth = surface_reconstruction.extract(patch)
+raw = surface_reconstruction.extract_surface(patch, smooth=False)
+smooth = surface_reconstruction.extract_surface(patch)
 print(f"raw: {len(raw.faces)} faces, area {raw.areas.sum() / 100:.1f} cm2")
 print(f"smooth: {len(smooth.faces)} faces, area {smooth.areas.sum() / 100:.1f} cm2")
 
@@ -86,11 +86,11 @@ pictures.picture(fig, alt, f"area {raw.areas.sum() / 100:.1f} and {smooth.areas.
 # ## 2. How far may it move?
 #
 # Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half
-# a voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract` finds the smoothest
+# a voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface` finds the smoothest
 # surface within these bounds and keeps the volume.
 
 # %% tags=["nbval-check-output"]
-moved = surface_reconstruction.deviation(raw, smooth)
+moved = surface_reconstruction.measure_deviation(raw, smooth)
 bound = np.linalg.norm(patch.spacing) / 2
 print(f"moved by {moved.mean:.2f} mm on average, {moved.max:.2f} at most; allowed {bound:.2f}")
 print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm3 after")
@@ -104,8 +104,8 @@ widgets.surface(patch)
 
 # %% tags=["nbval-check-output"]
 for steps in (0, 1, 5, 10, 24, 200):
-    after = surface_reconstruction.extract(patch, n_steps=steps)
-    moved = surface_reconstruction.deviation(raw, after)
+    after = surface_reconstruction.extract_surface(patch, n_steps=steps)
+    moved = surface_reconstruction.measure_deviation(raw, after)
     print(f"{steps:3} steps: area {after.areas.sum() / 100:.2f} cm2, moved {moved.mean:.2f} mm")
 
 # %% [markdown]
@@ -209,8 +209,8 @@ check.exercise("6.2", to_mm)
 #
 # | paper | code | unit |
 # |---|---|---|
-# | marching cubes | `surface_reconstruction.extract(smooth=False)` | mm |
-# | staircase defect | `surface_reconstruction.extract(smooth=True)` | mm |
+# | marching cubes | `surface_reconstruction.extract_surface(smooth=False)` | mm |
+# | staircase defect | `surface_reconstruction.extract_surface(smooth=True)` | mm |
 # | digital model | `Prosthesis.mesh`, `cn.save` | mm |
 # | top, inner surface | `Prosthesis.surface(OUTER)`, `(INNER)` | mm |
 #

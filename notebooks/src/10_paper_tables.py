@@ -266,7 +266,7 @@ for i, side in enumerate(("outer", "inner")):
 dented = classroom.load("class", defect="partial", needs_truth=True)
 at = int(dented.truth.voxels.sum(axis=(1, 2)).argmax())
 ring = segmentation.segment(dented.ct).voxels[at]
-found = prosthesis_volume.partial_loss(ring, min_area=20)
+found = prosthesis_volume.fill_partial_loss(ring, min_area_px=20)
 masks = {
     "(b) bone": ring,
     "(c) hull - bone": convex_hull_image(ring) & ~ring,

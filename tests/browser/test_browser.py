@@ -26,8 +26,8 @@ plane = sum(one.planes) // 2
 """,
     "widgets.features(bone, plane, opening=one.sheet)",
     """
-seen = feature_extraction.slice_features(bone.voxels[plane])
-ends, _ = feature_extraction.gap_ends(seen, one.sheet.voxels[plane], skip=3, reach=8)
+seen = feature_extraction.extract_features(bone.voxels[plane])
+ends, _ = feature_extraction.find_gap_ends(seen, one.sheet.voxels[plane], skip_px=3, reach_px=8)
 widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels[plane])
 """,
     """

@@ -12,7 +12,7 @@ from cranio_nb.errors import CannotWrite
 from cranio_nb.mesh import Mesh
 from cranio_nb.output import files
 from cranio_nb.output.files import MESH_FORMATS, jsonable, output_folder, validate, write_json, write_mesh, write_nifti
-from cranio_nb.stages.surface_reconstruction import extract
+from cranio_nb.stages.surface_reconstruction import extract_surface
 from cranio_nb.volume import AxisOrder, Volume, canonical_order
 
 
@@ -22,7 +22,7 @@ def solid():
     plane, row, col = np.indices((9, 14, 12))
     inside = ((plane - 4) / 4.2) ** 2 + ((row - 6.5) / 6) ** 2 + ((col - 5.5) / 5) ** 2 < 1
     affine = np.array([[0, 0.1, 0.45, 812], [0, 0.44, -0.1, -95], [2.5, 0, 0, 33], [0, 0, 0, 1.0]])
-    return extract(Volume(inside, affine))
+    return extract_surface(Volume(inside, affine))
 
 
 def ball(centre=(0, 0, 0), radius=1.0):

@@ -16,6 +16,7 @@ from click.testing import CliRunner
 from cranio_nb.cli.main import main
 from cranio_nb.drawing import figures
 from cranio_nb.errors import CannotWrite, InputRefused, NoOpening
+from cranio_nb.geometry.face_sides import label_faces
 from cranio_nb.methods import catalogue
 from cranio_nb.output import comparison_page
 from cranio_nb.output.files import write_nifti
@@ -24,7 +25,7 @@ from cranio_nb.pipeline import compare, trial
 from cranio_nb.pipeline.run import prepare
 from cranio_nb.pipeline.trial import Contender, attempt, attempt_apart, contenders
 from cranio_nb.prosthesis import Prosthesis
-from cranio_nb.stages.surface_reconstruction import extract, face_sides
+from cranio_nb.stages.surface_reconstruction import extract_surface
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -35,8 +36,8 @@ def from_truth(grow):
     def design(bone, openings=None, *, progress=None):
         case = phantom_case("tiny", "round", 0)
         patch = np.roll(case.implant, grow, axis=0) & ~bone.voxels
-        mesh = extract(bone.with_voxels(patch))
-        sides = face_sides(mesh, bone, openings[0].head_centre)
+        mesh = extract_surface(bone.with_voxels(patch))
+        sides = label_faces(mesh, bone, openings[0].head_centre)
         return Prosthesis(mesh, sides, bone.with_voxels(patch), "stand-in", {}, {"version": "0", "seconds": 1.0})
 
     return design
@@ -204,7 +205,9 @@ def test_a_patch_that_runs_out_of_the_image_is_a_failure_and_no_refusal(case, mo
     def leaking(bone, openings=None, *, progress=None):
         patch = np.zeros(bone.shape, bool)
         patch[-1] = True
-        return Prosthesis(extract(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking")
+        return Prosthesis(
+            extract_surface(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking"
+        )
 
     monkeypatch.setitem(STAND_INS, "perfect", leaking)
     with only_stand_ins():

@@ -32,9 +32,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ...errors import NoOpening
+from ...geometry import voxel_pieces
 from ...opening import Opening
 from ...prosthesis import Prosthesis
-from ...stages import prosthesis_volume
 from ...vault import opening_search, radius_map
 from ...volume import Volume
 from ..assembly import assemble
@@ -105,7 +105,7 @@ def design(
     tol, max_iter
         As for `sheet_motion.relax`, in mm; only with free weights.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -131,7 +131,7 @@ def design(
         made = fit(radius_map.look(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
         piece = radius_map.voxelise(made.vault, *radius_map.thickened(made.vault, *radii), bone)
-        patch |= prosthesis_volume.main_piece(piece, one.sheet.voxels)
+        patch |= voxel_pieces.keep_main_piece(piece, one.sheet.voxels)
         working.append(made)
     if not patch.any():
         raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")

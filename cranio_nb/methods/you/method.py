@@ -30,10 +30,10 @@ from scipy.spatial import cKDTree
 from skimage.measure import find_contours
 
 from ...errors import InputRefused, NoOpening
+from ...geometry import voxel_pieces
 from ...mesh import Mesh
 from ...opening import Opening
 from ...prosthesis import Prosthesis
-from ...stages import prosthesis_volume
 from ...vault import opening_search, radius_map
 from ...volume import Volume
 from ..assembly import assemble
@@ -94,7 +94,7 @@ def design(
     n_guides : int
         Guiding points around each hole, 3 at least.
     smooth : bool
-        Surface without stairs (see `surface.extract`).
+        Surface without stairs (see `surface_reconstruction.extract_surface`).
     progress : callable, optional
         Called with (stage, fraction done).
 
@@ -219,7 +219,7 @@ def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop,
 
 def _piece(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
     """Voxels inside the solid and off the bone, in one piece, without the slivers where a fill grazes the bone."""
-    return prosthesis_volume.main_piece(
+    return voxel_pieces.keep_main_piece(
         ndimage.binary_opening(mesh_to_voxels.inside(closed, bone) & ~bone.voxels), opening
     )
 

@@ -76,11 +76,16 @@ def balloon(ends: GapEnds, inside: ArrayLike, *, background: NDArray | None = No
         The slice behind the curve: a bool mask of bone, or HU.
     px : float, optional
         Size of a pixel in mm, for the scale bar; it counts px when not given.
+
+    Returns
+    -------
+    Panel
+        Controls ``preset``, ``pressure``, ``n``, ``tension``, ``rigidity``, ``dt``, ``tol`` and ``step``.
     """
     frame = ChordFrame.of(ends, inside)
     angles = frame.end_angles(ends)
-    scene = Scene(ends, frame, ground(background), px)
-    run = lru_cache(maxsize=64)(lambda *values: inflation(frame.length, angles, *values))
+    scene = Scene(ends, frame, _background(background), px)
+    run = lru_cache(maxsize=64)(lambda *values: record_inflation(frame.length, angles, *values))
     k = "k: pressure (px per index\N{SUPERSCRIPT TWO}, outward positive)"
     controls = (
         Choice("preset", "pressure and start curve", PRESETS, PRESETS[0]),
@@ -96,10 +101,10 @@ def balloon(ends: GapEnds, inside: ArrayLike, *, background: NDArray | None = No
         "A gap in a slice with its end tangents, the start curve dashed and the balloon at the chosen step; beside it "
         "the change of the curve and its elastic energy at every step."
     )
-    return Panel(controls, lambda step, **values: balloon_view(scene, run(*values.values()), values, step), alt=alt)
+    return Panel(controls, lambda step, **values: _view(scene, run(*values.values()), values, step), alt=alt)
 
 
-def inflation(
+def record_inflation(
     length: float,
     angles: tuple[float, float],
     preset: str,
@@ -110,8 +115,28 @@ def inflation(
     dt: float,
     tol: float,
 ) -> Inflation:
-    """Run a balloon and keep all its steps, at most `MAX_STEPS`."""
-    start, slopes, push = initial(length, angles, preset, pressure, n)
+    """Run a balloon and keep all its steps, at most `MAX_STEPS`.
+
+    Parameters
+    ----------
+    length : float
+        Of the gap, px.
+    angles : tuple of float
+        theta0 and theta1, rad.
+    preset : str
+        One of `PRESETS`.
+    pressure : float
+        k, px per index squared, where the preset leaves it open.
+    n : int
+        Snaxels.
+    tension, rigidity, dt, tol : float
+        As for `deformable_model.inflate`.
+
+    Returns
+    -------
+    Inflation
+    """
+    start, slopes, push = _initial(length, angles, preset, pressure, n)
     curves, change = [start], []
 
     def keep(step: int, curve: Points, moved: NDArray) -> None:
@@ -120,6 +145,7 @@ def inflation(
 
     scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol}
     result = stage.inflate(start, slopes, pressure=push, max_iter=MAX_STEPS, iter_callback=keep, **scheme)
+    # elastic energy of each curve, by differences per index
     stack = np.array(curves)
     energy = (
         tension * (np.diff(stack, axis=1) ** 2).sum(axis=(1, 2))
@@ -128,7 +154,7 @@ def inflation(
     return Inflation(stack, np.array(change), energy, np.broadcast_to(push, (n,)), bool(result.converged))
 
 
-def initial(
+def _initial(
     length: float, angles: tuple[float, float], preset: str, pressure: float, n: int
 ) -> tuple[Points, Points, NDArray[np.float64]]:
     """Start curve, shape (n, 2), its end slopes per index, shape (2, 2), and the pressure."""
@@ -144,15 +170,26 @@ def initial(
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What lies behind a balloon: its ends, its frame, the slice as RGB or None, and mm per px or None."""
+    """What lies behind a balloon.
+
+    Parameters
+    ----------
+    ends : GapEnds
+        Slice (row, col) px.
+    frame : ChordFrame
+    background : ndarray of uint8, shape (R, C, 3), or None
+        The slice.
+    px : float or None
+        Size of a pixel, mm.
+    """
 
     ends: GapEnds
     frame: ChordFrame
-    ground: RGB | None
+    background: RGB | None
     px: float | None
 
 
-def ground(background: NDArray | None) -> RGB | None:
+def _background(background: NDArray | None) -> RGB | None:
     """A bone mask or a slice in HU as a pale picture."""
     if background is None:
         return None
@@ -161,7 +198,7 @@ def ground(background: NDArray | None) -> RGB | None:
     return (windowed(background, 400, 2000) // 2 + 127).astype(np.uint8)
 
 
-def balloon_view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
+def _view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     """A balloon at a step; behind it its start curve, beside it its whole way."""
     last = len(run.change)
     step = min(step, last)
@@ -169,12 +206,12 @@ def balloon_view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     _draw_gap(canvas, scene, run, step)
     _draw_way(canvas, run, step, values["tol"])
     state = "at rest" if step == last and run.converged else "not at rest"
-    moved = f"||dc|| = {run.change[step - 1]:.2g} px, " if step else ""
+    change = f"||dc|| = {run.change[step - 1]:.2g} px, " if step else ""
     k = f"k = {run.pressure.mean():.3g}" + (" on average" if np.ptp(run.pressure) > 1e-12 else "")
     low, apex = run.curves[step][:, 1].min(), run.curves[step][:, 1].max()
     depth = f" and {-low:.1f} px below" if low < -0.05 else ""
     chord = f"the chord of {scene.frame.length:.1f} px"
-    line = f"Step {step} of {last}, {state}: {moved}apex {apex:.1f} px above{depth} {chord}, "
+    line = f"Step {step} of {last}, {state}: {change}apex {apex:.1f} px above{depth} {chord}, "
     off = () if values["preset"] == PRESETS[0] else ("pressure",)
     return View(canvas.array(), line + f"{k}.", limits={"step": last}, off=off)
 
@@ -187,8 +224,9 @@ def _draw_gap(canvas: Canvas, scene: Scene, run: Inflation, step: int) -> None:
     margin = 0.12 * length
     window = Window.around((0, 0, _WIDTH, _HEIGHT), corners.min(axis=0) - margin, corners.max(axis=0) + margin)
     inset = Canvas(_WIDTH, _HEIGHT)
-    if scene.ground is not None:
-        inset.show(scene.ground, window)
+    # slice, chord, curves, tangents
+    if scene.background is not None:
+        inset.show(scene.background, window)
     place = lambda curve: window.px(scene.frame.to_slice(curve))  # noqa: E731  (one frame into the next)
     inset.line(place([[0, 0], [length, 0]]), GREY, width=1, dash=(2, 3))
     inset.line(place(run.curves[0]), ORANGE, width=2.5, dash=(8, 5))
@@ -197,6 +235,7 @@ def _draw_gap(canvas: Canvas, scene: Scene, run: Inflation, step: int) -> None:
     for point, tangent in zip(scene.ends.points, scene.ends.tangents, strict=True):
         inset.arrow(window.px(point), window.px(point + 0.2 * length * tangent), GREEN)
         inset.dots(window.px(point), "#FFFFFF", radius=5, edge=BLACK)
+    # scale bar and legend
     unit = 1.0 if scene.px is None else scene.px
     bar = round_length(0.25 * _WIDTH / window.zoom * unit)
     inset.scale_bar(14, _HEIGHT - 14, bar / unit * window.zoom, f"{bar:g} {'px' if scene.px is None else 'mm'}")
@@ -209,6 +248,7 @@ def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:
     """Change and energy at every step, the present one marked."""
     last = len(run.change)
     steps = np.arange(1, last + 1)
+    # above: the change, on a logarithmic scale, with the tolerance
     low = max(min(run.change.min(), tol) / 2, 1e-6)
     changes = Chart((_WIDTH, 0, _CHARTS, 256), (0, last + 1), (low, 2 * max(run.change.max(), tol)), log=True)
     changes.frame(canvas, "change of the curve ||dc|| (px)", "step")
@@ -216,9 +256,10 @@ def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:
     (x, y), *_ = changes.px([[0, tol]])
     canvas.text(x + 6, y - 5, "tol", size=12, colour=VERMILLION)
     canvas.line(changes.px(np.column_stack([steps, run.change])), BLUE, width=2)
+    # below: the energy
     low, high = run.energy.min(), run.energy.max()
-    room = max(0.08 * (high - low), 1e-3 * high)
-    energies = Chart((_WIDTH, 256, _CHARTS, 256), (0, last + 1), (low - room, high + room))
+    margin = max(0.08 * (high - low), 1e-3 * high)
+    energies = Chart((_WIDTH, 256, _CHARTS, 256), (0, last + 1), (low - margin, high + margin))
     energies.frame(canvas, "elastic energy (px\N{SUPERSCRIPT TWO})", "step")
     canvas.line(energies.px(np.column_stack([np.arange(last + 1), run.energy])), SKY, width=2)
     if step:

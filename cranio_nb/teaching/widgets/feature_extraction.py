@@ -27,6 +27,7 @@ from ...drawing.canvas import (
     Canvas,
     Window,
     plain,
+    rgb_of,
     tinted,
 )
 from ...stages import feature_extraction as stage
@@ -36,7 +37,7 @@ from .panel import Panel
 from .parts import SIDE, annotate_slice
 
 _INSET = 254  # px of a close-up
-_AROUND = 22.0  # mm seen around a gap end in a close-up
+_AROUND = 22.0  # mm shown around a gap end in a close-up
 
 
 def features(bone: Volume, plane: int, *, opening: Volume | None = None) -> Panel:
@@ -50,22 +51,35 @@ def features(bone: Volume, plane: int, *, opening: Volume | None = None) -> Pane
         Slice to begin with.
     opening : Volume, optional
         Bool mask of the opening on the same grid (``opening.sheet``): says which gap is meant.
+
+    Returns
+    -------
+    Panel
+        Controls ``plane``, ``skip_mm`` and ``reach_mm``.
     """
     part = Slices(bone, opening)
     controls = (
         Slider("plane", f"slice (0 to {bone.shape[0] - 1})", 0, bone.shape[0] - 1, plane),
-        Slider("skip", "skip: left out at the cut (mm)", 0, 20, 4.5, 0.5),
-        Slider("reach", "reach: fitted after that (mm)", 1, 40, 10, 0.5),
+        Slider("skip_mm", "skip: left out at the cut (mm)", 0, 20, 4.5, 0.5),
+        Slider("reach_mm", "reach: fitted after that (mm)", 1, 40, 10, 0.5),
     )
     alt = (
         "Bone of a slice with outer boundary, inner boundary, spine and convex hull; two close-ups show the boundary "
         "points that carry the tangent line at each end of the gap, and the tangents."
     )
-    return Panel(controls, lambda **values: features_view(part, **values), alt=alt)
+    return Panel(controls, lambda **values: _view(part, **values), alt=alt)
 
 
 class Slices:
-    """The slices of a skull, cut down to where there is bone, and the features of the ones looked at."""
+    """The slices of a skull, cut down to where there is bone, and the features of those that were asked for.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    opening : Volume or None
+        Bool mask of the opening on the same grid.
+    """
 
     def __init__(self, bone: Volume, opening: Volume | None) -> None:
         box = ndimage.find_objects(bone.voxels.any(axis=0).view(np.uint8))
@@ -73,56 +87,70 @@ class Slices:
         self.bone = bone.crop((slice(None), rows, cols))
         self.sheet = None if opening is None else opening.crop((slice(None), rows, cols))
         self.px = float(bone.spacing[1:].mean())
-        self.seen = lru_cache(maxsize=8)(lambda plane: stage.slice_features(self.bone.voxels[plane]))
-        self.drawn = lru_cache(maxsize=8)(lambda plane: _ground(self, plane))
+        self.features = lru_cache(maxsize=8)(lambda plane: stage.extract_features(self.bone.voxels[plane]))
+        self.background = lru_cache(maxsize=8)(lambda plane: _draw_background(self, plane))
 
-    def ends(self, plane: int, skip: float, reach: float) -> tuple[GapEnds, GapEnds]:
-        """Outer and inner gap ends; `skip` and `reach` in mm."""
+    def ends(self, plane: int, *, skip_mm: float, reach_mm: float) -> tuple[GapEnds, GapEnds]:
+        """Ends of the gap of a plane.
+
+        Parameters
+        ----------
+        plane : int
+        skip_mm, reach_mm : float
+            As for `feature_extraction.find_gap_ends`, in mm.
+
+        Returns
+        -------
+        outer, inner : GapEnds
+            Slice (row, col) px.
+        """
         opening = None if self.sheet is None else self.sheet.voxels[plane]
-        return stage.gap_ends(self.seen(plane), opening, skip=skip / self.px, reach=reach / self.px)
+        skip_px, reach_px = skip_mm / self.px, reach_mm / self.px
+        return stage.find_gap_ends(self.features(plane), opening, skip_px=skip_px, reach_px=reach_px)
 
 
-def features_view(part: Slices, plane: int, skip: float, reach: float) -> View:
+def _view(part: Slices, plane: int, skip_mm: float, reach_mm: float) -> View:
     """A slice with its features, and close-ups of both ends of its gap."""
     mask = part.bone.voxels[plane]
     window = Window.whole((0, 0, SIDE, SIDE), mask.shape)
     try:
-        ground, rgb, seen, outside = part.drawn(plane)
+        background, rgb, found, outside = part.background(plane)
     except stage.SliceProblem as problem:
         canvas = Canvas(SIDE + 8 + _INSET, SIDE)
         canvas.show(tinted(plain(mask.shape), mask, BONE), window)
         return View(canvas.array(), f"Slice {plane}: {problem}")
-    canvas = ground.copy()
+    canvas = background.copy()
     try:
-        pair = part.ends(plane, skip, reach)
+        pair = part.ends(plane, skip_mm=skip_mm, reach_mm=reach_mm)
     except stage.SliceProblem as problem:
         return View(canvas.array(), f"Slice {plane}: {problem}")
-    fits = [fitted(seen, outside, ends, skip / part.px, reach / part.px) for ends in pair]
+    lengths = {"skip_px": skip_mm / part.px, "reach_px": reach_mm / part.px}
+    fits = [_fit(found, outside, ends, **lengths) for ends in pair]
     _draw_ends(canvas, window, fits, part.px, 1.0)
     for side in (0, 1):
         middle = (pair[0].points[side] + pair[1].points[side]) / 2
         _close_up(canvas, (SIDE + 8, side * (SIDE - _INSET), _INSET, _INSET), rgb, middle, fits, part.px, side)
     counts = " and ".join(str(sum(len(points) for points in fit.used)) for fit in fits)
     width = np.hypot(*np.diff(pair[0].points, axis=0)[0]) * part.px
-    line = f"Slice {plane}, skip {skip:g} mm, reach {reach:g} mm: {counts} boundary points carry the outer and inner "
-    return View(canvas.array(), line + f"tangents; the outer ends stand {width:.1f} mm apart.")
+    line = f"Slice {plane}, skip {skip_mm:g} mm, reach {reach_mm:g} mm: {counts} boundary points carry the outer and "
+    return View(canvas.array(), line + f"inner tangents; the outer ends are {width:.1f} mm apart.")
 
 
-def _ground(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatures, NDArray[np.bool_]]:
-    """All of a picture that `skip` and `reach` leave as it is; the slice in colours; which boundary is off the hull."""
-    seen, mask = part.seen(plane), part.bone.voxels[plane]
-    outside = ~seen.in_hull
+def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatures, NDArray[np.bool_]]:
+    """What `skip` and `reach` do not change: canvas, slice in colours, features, which boundary is off the hull."""
+    found, mask = part.features(plane), part.bone.voxels[plane]
+    outside = ~found.in_hull
     canvas, window = Canvas(SIDE + 8 + _INSET, SIDE), Window.whole((0, 0, SIDE, SIDE), mask.shape)
-    rgb = slice_picture(mask, seen)
+    rgb = _slice_picture(mask, found)
     canvas.show(rgb, window)
-    _draw_lines(canvas, window, seen)
+    _draw_lines(canvas, window, found)
     annotate_slice(canvas, window, part.bone, plane)
     outer_name, inner_name = "outer boundary, B \N{MINUS SIGN} S", "inner boundary, B \N{INTERSECTION} S"
     bounds = [(SKY, "area", outer_name), (ORANGE, "area", inner_name)]
     lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S")]
     used = [(BLUE, "dot", "used, outer"), (VERMILLION, "dot", "used, inner"), (GREEN, "line", "tangents")]
     canvas.legend(SIDE / 2 - 90, SIDE / 2 - 66, [*bounds, *lines, *used])
-    return canvas, rgb, seen, outside
+    return canvas, rgb, found, outside
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,38 +162,38 @@ class Fit:
     colour: str
 
 
-def fitted(seen: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, skip: float, reach: float) -> Fit:
-    """The boundary points behind each tangent; `outside` says which lie off the hull; lengths in px."""
-    is_outer = bool(outside[np.argmin(np.hypot(*(seen.boundary - ends.points[0]).T))])
-    boundary = seen.boundary[outside == is_outer]
-    runs = [run for spine in seen.skeleton for run in (spine, spine[::-1])]
+def _fit(found: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, *, skip_px: float, reach_px: float) -> Fit:
+    """The boundary points behind each tangent; `outside` says which lie off the hull."""
+    is_outer = bool(outside[np.argmin(np.hypot(*(found.boundary - ends.points[0]).T))])
+    boundary = found.boundary[outside == is_outer]
+    runs = [run for spine in found.skeleton for run in (spine, spine[::-1])]
     used = []
     for point in ends.points:
         run = min(runs, key=lambda r: np.hypot(*(r[0] - point)))
-        used.append(boundary[stage.used_points(boundary, run, skip, reach)])
+        used.append(boundary[stage.select_tangent_points(boundary, run, skip_px=skip_px, reach_px=reach_px)])
     return Fit(ends, tuple(used), BLUE if is_outer else VERMILLION)
 
 
-def slice_picture(mask: NDArray[np.bool_], seen: SliceFeatures) -> RGB:
+def _slice_picture(mask: NDArray[np.bool_], found: SliceFeatures) -> RGB:
     """Bone with its outer and inner boundary pixels, shape (R, C, 3)."""
     rgb = tinted(plain(mask.shape), mask, BONE)
-    for points, colour in ((seen.outer, SKY), (seen.inner, ORANGE)):
-        index = points.astype(np.intp)
-        rgb[index[:, 0], index[:, 1]] = np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)], np.uint8)
+    for points, colour in ((found.outer, SKY), (found.inner, ORANGE)):
+        row, col = points.astype(np.intp).T
+        rgb[row, col] = rgb_of(colour)
     return rgb
 
 
-def _draw_lines(canvas: Canvas, window: Window, seen: SliceFeatures) -> None:
+def _draw_lines(canvas: Canvas, window: Window, found: SliceFeatures) -> None:
     """Hull and spines."""
-    inside = seen.skeleton[0].mean(axis=0)
-    for candidate in (inside, np.concatenate(seen.skeleton).mean(axis=0)):
-        if (seen.hull[:, :2] @ candidate + seen.hull[:, 2] < -1e-6).all():
-            corners = HalfspaceIntersection(seen.hull, candidate).intersections
+    inside = found.skeleton[0].mean(axis=0)
+    for candidate in (inside, np.concatenate(found.skeleton).mean(axis=0)):
+        if (found.hull[:, :2] @ candidate + found.hull[:, 2] < -1e-6).all():
+            corners = HalfspaceIntersection(found.hull, candidate).intersections
             angle = np.arctan2(*(corners - candidate).T)
             outline = corners[np.argsort(angle)]
             canvas.line(window.px(np.concatenate([outline, outline[:1]])), GREY, width=1.5, dash=(7, 4))
             break
-    for spine in seen.skeleton:
+    for spine in found.skeleton:
         canvas.line(window.px(spine), BLACK, width=1.5)
 
 

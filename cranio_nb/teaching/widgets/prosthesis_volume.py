@@ -10,13 +10,12 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ...drawing.canvas import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, tinted
 from ...drawing.canvas_axes import Chart
-from ...methods import slicewise
+from ...methods.design import design
+from ...methods.slicewise import SliceResult
 from ...opening import Opening
-from ...stages import prosthesis_volume
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
 from .panel import Panel
@@ -47,21 +46,32 @@ class Stack:
 
     bone: Volume
     first: int
-    slices: tuple[slicewise.SliceResult, ...]
+    slices: tuple[SliceResult, ...]
     patches: NDArray[np.bool_]
 
     @cached_property
     def areas(self) -> NDArray[np.float64]:
-        """Area of each patch, mm2."""
+        """Area of each patch.
+
+        Returns
+        -------
+        ndarray, shape (len(slices),)
+            mm2.
+        """
         return self.patches.sum(axis=(1, 2)) * float(np.prod(self.bone.spacing[1:]))
 
     @cached_property
     def window(self) -> Window:
-        """All patches with some room around."""
+        """Where all patches are drawn, with some bone around them.
+
+        Returns
+        -------
+        Window
+        """
         rows, cols = np.nonzero(self.patches.any(axis=0))
         low, high = np.array([rows.min(), cols.min()]), np.array([rows.max(), cols.max()])
-        room = 0.25 * (high - low).max() + 4
-        return Window.around((0, 0, SIDE, SIDE), low - room, high + room)
+        margin = 0.25 * (high - low).max() + 4
+        return Window.around((0, 0, SIDE, SIDE), low - margin, high + margin)
 
 
 def patch(bone: Volume, opening: Opening) -> Panel:
@@ -72,6 +82,11 @@ def patch(bone: Volume, opening: Opening) -> Panel:
     bone : Volume
         Bool mask of the skull.
     opening : Opening
+
+    Returns
+    -------
+    Panel
+        Controls ``plane``, ``pressure`` and ``curves``.
     """
     made = lru_cache(maxsize=2)(lambda pressure: fill_slices(bone, opening, pressure))
     first = made(PRESSURES[0]).first
@@ -82,52 +97,50 @@ def patch(bone: Volume, opening: Opening) -> Panel:
         Switch("curves", "show the curves", True),
     )
     alt = "A slice with its bone, the two curves across the gap and the patch between them; beside it the patch's area."
-    return Panel(controls, lambda pressure, **values: patch_view(made(pressure), **values), alt=alt)
+    return Panel(controls, lambda pressure, **values: _view(made(pressure), **values), alt=alt)
 
 
 def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
-    """Curves and patches of all slices of an opening, axial as in the paper."""
-    options = slicewise.paper_options(bone)
-    if pressure == PRESSURES[0]:
-        options["pressure"] = None
-    made = slicewise.design(bone, [opening], **options)
-    (working,) = made.working
-    first = round(float(bone.to_voxel(working.frames[0, 0])[0]))
-    slices = bone.voxels[first : first + len(working.slices)]
-    px = float(bone.spacing[1:].mean())
-    near = ndimage.binary_dilation(opening.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
-    patches = [_filled(result, slices[result.plane], near, 4 / px**2) for result in working.slices]
-    return Stack(bone, first, working.slices, np.array(patches))
+    """Curves and patches of all slices of an opening, axial as in the paper.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    opening : Opening
+    pressure : str
+        One of `PRESSURES`.
+
+    Returns
+    -------
+    Stack
+    """
+    own = {"pressure": None} if pressure == PRESSURES[0] else {}
+    made = design(bone, [opening], method="slicewise", preset="paper", **own)
+    (sliced,) = made.working
+    assert made.patch is not None
+    first = round(float(bone.to_voxel(sliced.frames[0, 0])[0]))
+    return Stack(bone, first, sliced.slices, made.patch.voxels[first : first + len(sliced.slices)])
 
 
-def _filled(
-    result: slicewise.SliceResult, bone: NDArray[np.bool_], near: NDArray[np.bool_], min_area: float
-) -> NDArray[np.bool_]:
-    if result.status == "hull":
-        return prosthesis_volume.partial_loss(bone, min_area=min_area, region=near)
-    if result.curves.size:
-        return prosthesis_volume.patch(result.curves[0], result.curves[1], bone)
-    return np.zeros_like(bone)
-
-
-def patch_view(stack: Stack, plane: int, curves: bool) -> View:
+def _view(stack: Stack, plane: int, curves: bool) -> View:
     """One slice with its patch, and the areas of all."""
     at = plane - stack.first
     result, mask = stack.slices[at], stack.bone.voxels[plane]
     words, colour = _WORDS[result.status]
     canvas = Canvas(SIDE + 350, SIDE)
     window = stack.window
+    # the slice: bone, patch, curves
     inset = Canvas(SIDE, SIDE)
-    rgb = tinted(
-        tinted(plain(mask.shape), mask, BONE), stack.patches[at], colour if result.status != "skipped" else SKY
-    )
-    inset.show(rgb, window)
+    colour = colour if result.status != "skipped" else SKY
+    inset.show(tinted(tinted(plain(mask.shape), mask, BONE), stack.patches[at], colour), window)
     if curves:
         for curve, line, dash in zip(result.curves, (BLUE, VERMILLION), (None, (8, 4)), strict=False):
             inset.line(window.px(curve), line, width=2.5, dash=dash)
     annotate_slice(inset, window, stack.bone, plane)
     inset.legend(SIDE - 140, 6, [(BLUE, "line", "outer curve"), (VERMILLION, "dash", "inner curve")])
     canvas.inlay(inset, 0, 0)
+    # beside it the areas of all slices
     _draw_areas(canvas, stack, at)
     found = sorted({s.status for s in stack.slices}, key=list(_WORDS).index)
     canvas.legend(SIDE + 58, 330, [(_WORDS[s][1], "area", _WORDS[s][0]) for s in found])

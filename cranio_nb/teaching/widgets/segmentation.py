@@ -23,68 +23,80 @@ from ...drawing.canvas import (
     tinted,
     windowed,
 )
-from ...stages.segmentation import BONE_HU, fill_holes, threshold_hu
+from ...stages import segmentation as stage
 from ...volume import Volume
 from .controls import Slider, Switch, View
 from .panel import Panel
-from .parts import SIDE, annotate_slice, histogram, hu_chart
+from .parts import SIDE, Histogram, annotate_slice, count_hu, hu_chart
 
-_PART_COLOURS = (BONE, ORANGE, SKY, PURPLE, YELLOW, VERMILLION)
+_PART_COLOURS = (BONE, ORANGE, SKY, PURPLE, YELLOW, VERMILLION)  # of the pieces, the largest first
+_MOST_PARTS = 60  # coloured; the rest are specks
 
 
 def threshold(ct: Volume) -> Panel:
-    """Choose the bone threshold and see what becomes bone.
+    """Choose the bone threshold and follow what becomes bone.
 
     Parameters
     ----------
     ct : Volume
         HU.
+
+    Returns
+    -------
+    Panel
+        Controls ``plane``, ``threshold_hu``, ``max_hole_mm2`` and ``parts``.
     """
     last = ct.shape[0] - 1
     controls = (
         Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
-        Slider("hu", "lowest HU of bone", -200, 1500, BONE_HU, 10),
-        Slider("max_hole", "fill holes up to (mm\N{SUPERSCRIPT TWO})", 0, 200, 60, 5),
+        Slider("threshold_hu", "lowest HU of bone", -200, 1500, stage.BONE_HU, 10),
+        Slider("max_hole_mm2", "fill holes up to (mm\N{SUPERSCRIPT TWO})", 0, 200, 60, 5),
         Switch("parts", "colour the pieces", False),
     )
-    edges, counts = histogram(ct.voxels[:, ::2, ::2], -1100, 2500)
+    histogram = count_hu(ct.voxels[:, ::2, ::2])
     alt = "An axial slice with what the threshold takes for bone, filled holes in green, and the histogram of the CT."
-    return Panel(controls, lambda **values: threshold_view(ct, edges, counts, **values), alt=alt)
+    return Panel(controls, lambda **values: _view(ct, histogram, **values), alt=alt)
 
 
-def threshold_view(
-    ct: Volume, edges: NDArray, counts: NDArray, plane: int, hu: float, max_hole: float, parts: bool
-) -> View:
+def _view(ct: Volume, histogram: Histogram, plane: int, threshold_hu: float, max_hole_mm2: float, parts: bool) -> View:
     """A slice with its bone, filled holes and pieces, and the histogram with the threshold."""
     area = float(np.prod(ct.spacing[1:]))
-    raw = threshold_hu(ct.voxels[plane], hu)
-    bone = fill_holes(raw[None], max_hole / area)[0]
+    raw = stage.apply_threshold(ct.voxels[plane], threshold_hu)
+    bone = stage.fill_holes(raw[None], max_hole_px=max_hole_mm2 / area)[0]
     labels, n_parts = ndimage.label(bone, np.ones((3, 3)))
+
     canvas = Canvas(SIDE + 360, SIDE)
     window = Window.whole((0, 0, SIDE, SIDE), raw.shape)
-    canvas.show(bone_picture(ct.voxels[plane], raw, bone, labels if parts else None), window)
+    canvas.show(_bone_picture(ct.voxels[plane], raw, bone, labels if parts else None), window)
     annotate_slice(canvas, window, ct, plane)
-    chart = hu_chart(canvas, (SIDE + 4, 16, 350, 300), edges, counts)
-    chart.upright(canvas, hu, VERMILLION, width=3)
-    (x, y), *_ = chart.px([[hu, chart.y[1]]])
-    canvas.text(x + 6, y + 12, "bone", size=12, colour=VERMILLION, anchor="ls")
+    _draw_threshold(canvas, histogram, threshold_hu)
     entries = [(BONE, "area", "bone"), (GREEN, "area", "holes filled")]
     canvas.legend(SIDE + 62, 350, [*entries, (ORANGE, "area", "other pieces")] if parts else entries)
+
     filled = (np.count_nonzero(bone) - np.count_nonzero(raw)) * area
     line = (
-        f"Slice {plane} at {hu:g} HU: {np.count_nonzero(bone) * area / 100:.1f} cm\N{SUPERSCRIPT TWO} of bone in "
-        f"{n_parts} {'piece' if n_parts == 1 else 'pieces'}; {filled:.0f} mm\N{SUPERSCRIPT TWO} of holes filled."
+        f"Slice {plane} at {threshold_hu:g} HU: {np.count_nonzero(bone) * area / 100:.1f} cm\N{SUPERSCRIPT TWO} of "
+        f"bone in {n_parts} {'piece' if n_parts == 1 else 'pieces'}; {filled:.0f} mm\N{SUPERSCRIPT TWO} of holes "
+        "filled."
     )
     return View(canvas.array(), line)
 
 
-def bone_picture(hu: NDArray, raw: NDArray[np.bool_], bone: NDArray[np.bool_], labels: NDArray | None) -> RGB:
+def _draw_threshold(canvas: Canvas, histogram: Histogram, threshold_hu: float) -> None:
+    """The histogram of the CT with the threshold."""
+    chart = hu_chart(canvas, (SIDE + 4, 16, 350, 300), histogram)
+    chart.upright(canvas, threshold_hu, VERMILLION, width=3)
+    (x, y), *_ = chart.px([[threshold_hu, chart.y[1]]])
+    canvas.text(x + 6, y + 12, "bone", size=12, colour=VERMILLION, anchor="ls")
+
+
+def _bone_picture(hu: NDArray, raw: NDArray[np.bool_], bone: NDArray[np.bool_], labels: NDArray | None) -> RGB:
     """Dim CT, bone over it, filled holes in green, pieces in colours where labels are given; shape (R, C, 3)."""
     rgb = windowed(hu, 200, 1400) // 2
     if labels is None:
         rgb = tinted(rgb, raw, BONE)
     else:
-        order = np.argsort(np.bincount(labels.ravel())[1:])[::-1]
-        for rank, part in enumerate(order[:60]):
+        by_size = np.argsort(np.bincount(labels.ravel())[1:])[::-1]
+        for rank, part in enumerate(by_size[:_MOST_PARTS]):
             rgb = tinted(rgb, labels == part + 1, _PART_COLOURS[min(rank, len(_PART_COLOURS) - 1)])
     return tinted(rgb, bone & ~raw, GREEN)

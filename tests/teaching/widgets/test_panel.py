@@ -175,7 +175,7 @@ def test_a_grey_window_is_black_and_white_at_its_ends():
 
 def test_the_threshold_line_counts_the_bone_of_the_slice(static, ct):
     panel = widgets.threshold(ct).set(hu=700, max_hole=0, plane=25)
-    area = np.count_nonzero(segmentation.threshold_hu(ct.voxels[25], 700)) * np.prod(ct.spacing[1:]) / 100
+    area = np.count_nonzero(segmentation.apply_threshold(ct.voxels[25], 700)) * np.prod(ct.spacing[1:]) / 100
     assert f"{area:.1f} cm" in panel.view.line
 
 
@@ -191,8 +191,8 @@ def test_holes_filled_are_drawn_green(static):
 def test_the_features_line_counts_the_points_of_the_stage(static, skull, opening):
     bone, plane, px = skull(), middle_plane(opening), float(skull().spacing[1])
     panel = widgets.features(bone, plane, opening=opening).set(skip=5.0, reach=12.0)
-    seen = feature_extraction.slice_features(bone.voxels[plane])
-    ends = feature_extraction.gap_ends(seen, opening.voxels[plane], skip=5 / px, reach=12 / px)
+    seen = feature_extraction.extract_features(bone.voxels[plane])
+    ends = feature_extraction.find_gap_ends(seen, opening.voxels[plane], skip_px=5 / px, reach_px=12 / px)
     width = np.hypot(*np.diff(ends[0].points, axis=0)[0]) * px
     assert f"{width:.1f} mm apart" in panel.view.line
 

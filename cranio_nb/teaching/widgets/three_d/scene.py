@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What both panels look at.
+    """What both panels show.
 
     Parameters
     ----------
@@ -41,17 +41,45 @@ class Scene:
     mirrored: Array | None = None
 
 
-def coarse(vault: RadialChart, every: int) -> RadialChart:
-    """A chart of every n-th ray, counted from its middle; radii are means of their neighbours."""
+def thin_rays(vault: RadialChart, every: int) -> RadialChart:
+    """Keep every n-th ray of a radius map, counted from its middle; radii become means of their neighbours.
+
+    Parameters
+    ----------
+    vault : RadialChart
+        N x N rays.
+    every : int
+
+    Returns
+    -------
+    RadialChart
+        Its hole holds the hole of the finer map.
+    """
     shown = [np.where(vault.hole, np.nan, radius) for radius in (vault.outer, vault.inner)]
     outer, inner = (thin_plate.thinned(radius, every) for radius in shown)
     hole = thin_plate.thinned(vault.hole.astype(float), every) > _ANY
     return replace(vault, step=vault.step * every, outer=outer, inner=inner, hole=hole)
 
 
-def look(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
-    """The vault around a hole and, where it is known, the bone that is missing in it."""
-    vault = coarse(fine, every)
+def make_scene(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
+    """The vault around a hole and, where it is known, the bone that is missing in it.
+
+    Parameters
+    ----------
+    fine : RadialChart
+        Radius map of the hole.
+    bone : Volume
+        Bool mask of the skull.
+    truth : Prosthesis or None
+        The missing bone with its patch.
+    every : int
+        Every how many rays are kept.
+
+    Returns
+    -------
+    Scene
+    """
+    vault = thin_rays(fine, every)
     if truth is None or truth.patch is None:
         return Scene(vault, np.where(vault.hole, np.nan, vault.outer))
     whole = radius_map.along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
@@ -59,7 +87,22 @@ def look(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) 
 
 
 def error_line(off: Array) -> str:
-    """Mean with its sign, root mean square and maximum of errors of a radius."""
+    """Mean with its sign, root mean square and maximum of errors of a radius, in words.
+
+    Parameters
+    ----------
+    off : ndarray, any shape
+        mm, outward positive; what is not finite is left out.
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> error_line(np.array([-1.0, -2.0, np.nan]))
+    '1.50 mm too deep on average, rms 1.58 mm, 2.00 mm at most'
+    """
     off = off[np.isfinite(off)]
     mean = f"{abs(off.mean()):.2f} mm too {'high' if off.mean() > 0 else 'deep'} on average"
     return f"{mean}, rms {np.sqrt((off**2).mean()):.2f} mm, {np.abs(off).max():.2f} mm at most"

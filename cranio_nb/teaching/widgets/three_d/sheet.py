@@ -23,7 +23,7 @@ from ....vault.radius_map import RadialChart
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from .scene import SIDE, WIDE, Scene, error_line, look
+from .scene import SIDE, WIDE, Scene, error_line, make_scene
 
 MAX_STEPS = 40
 _EVERY = 4  # rays
@@ -50,7 +50,7 @@ class Way:
 
 
 def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = None) -> Panel:
-    """Push a sheet of D-NURBS into the head, let it go, and watch it come to rest; play, pause, step and scrub.
+    """Push a sheet of D-NURBS into the head and let it go until it is at rest; play, pause, step and scrub.
 
     Parameters
     ----------
@@ -58,12 +58,17 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
         Bool mask of the skull.
     opening : Opening
     truth : Prosthesis, optional
-        The missing bone with its patch, where it is known (`truth.true_prosthesis`).
+        The missing bone with its patch, where it is known (`against_truth.true_prosthesis`).
+
+    Returns
+    -------
+    Panel
+        Controls ``wavelength_mm``, ``mass``, ``damping`` and ``step``.
     """
-    scene = look(radius_map.look(bone, opening), bone, truth, _EVERY)
-    run = lru_cache(maxsize=16)(lambda *values: relaxing(scene.vault, *values))
+    scene = make_scene(radius_map.look(bone, opening), bone, truth, _EVERY)
+    run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.vault, **values))
     controls = (
-        Slider("wavelength", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
+        Slider("wavelength_mm", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
         Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5),
         Slider("damping", "\N{GREEK SMALL LETTER GAMMA}: damping per parameter area", 0.1, 100, 1, log=True),
         Slider("step", "step", 0, MAX_STEPS, MAX_STEPS, player=True),
@@ -72,12 +77,26 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
         "A net of control points over the bone and the sheet it carries at the chosen step; beside it a cut through "
         "the sheet, and its energy at every step."
     )
-    return Panel(controls, lambda step, **values: _sheet_view(scene, run(*values.values()), step), alt=alt, slow=True)
+    return Panel(controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, slow=True)
 
 
-def relaxing(vault: RadialChart, wavelength: float, mass: float, damping: float) -> Way:
-    """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps."""
-    setting = dnurbs.fit(vault, wavelength=wavelength, tension=0.0, span=_SPAN).settings[0]
+def relax_sheet(vault: RadialChart, *, wavelength_mm: float, mass: float, damping: float) -> Way:
+    """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps.
+
+    Parameters
+    ----------
+    vault : RadialChart
+        Of few rays, or it takes long.
+    wavelength_mm : float
+        Ripples of this length are halved.
+    mass, damping : float
+        Per parameter area.
+
+    Returns
+    -------
+    Way
+    """
+    setting = dnurbs.fit(vault, wavelength=wavelength_mm, tension=0.0, span=_SPAN).settings[0]
     dynamics = Dynamics(mass=mass, damping=damping)
     deep = replace(setting.natural, control=setting.natural.control * _DEEP)
     motions = [sheet_motion.start(deep, setting, dynamics)]
@@ -87,7 +106,7 @@ def relaxing(vault: RadialChart, wavelength: float, mass: float, damping: float)
     return Way(setting, tuple(motions))
 
 
-def _sheet_view(scene: Scene, way: Way, step: int) -> View:
+def _view(scene: Scene, way: Way, step: int) -> View:
     """Net and sheet at a step, a cut, and the energy."""
     last = len(way.motions) - 1
     now = way.motions[min(step, last)]
@@ -106,6 +125,7 @@ def _sheet_view(scene: Scene, way: Way, step: int) -> View:
 
 def _draw_net(canvas: Canvas, way: Way, one: Sheet) -> None:
     """Control net, sheet and bone, seen from outside and a little from below."""
+    # seen along a line that leans by _LEAN; the last shape and the bone set the scale
     flat = lambda points: points @ np.array([[1, 0], [0, np.cos(_LEAN)], [0, -np.sin(_LEAN)]])  # noqa: E731
     springs = way.setting.springs.points
     every = flat(np.concatenate([way.motions[-1].sheet.control.reshape(-1, 3), springs]))
@@ -113,6 +133,7 @@ def _draw_net(canvas: Canvas, way: Way, one: Sheet) -> None:
     place = lambda points: (flat(points) - middle) * zoom + SIDE / 2  # noqa: E731
     inset = Canvas(SIDE, SIDE)
     inset.dots(place(springs), BONE, radius=1.5)
+    # lines of the sheet twice in each span, then its control net
     (n, m), fine = one.spans, 48
     for v in np.linspace(0, n, 2 * n + 1):
         inset.line(place(one.at(np.full(fine, v), np.linspace(0, m, fine))), SKY, width=1.5)
