@@ -33,8 +33,8 @@ from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import prosthesis_volume
-from ..vault import opening_search, radius_map
-from ..vault.radius_map import RadialChart
+from ..vault import opening_search, radius_measurement, radius_voxels
+from ..vault.ray_grid import RadiusMap
 from ..volume import Volume
 from .assembly import assemble
 
@@ -50,7 +50,7 @@ class HullDesign:
     Parameters
     ----------
     opening : Opening
-    vault : RadialChart
+    vault : RadiusMap
     outer, inner : ndarray, shape (M, M)
         Radii of the two hulls across the hole in mm, nan elsewhere; all nan where slices were used.
     slices : tuple of dict
@@ -58,7 +58,7 @@ class HullDesign:
     """
 
     opening: Opening
-    vault: RadialChart
+    vault: RadiusMap
     outer: NDArray[np.float64]
     inner: NDArray[np.float64]
     slices: tuple[dict[str, Any], ...] = ()
@@ -124,17 +124,17 @@ def design(
 
 def _in_space(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening between the hulls of the vault's two surfaces."""
-    vault = radius_map.look(bone, one)
+    vault = radius_measurement.measure_around(bone, one)
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
-    outer, inner = radius_map.thickened(vault, outer, inner)
-    piece = radius_map.voxelise(vault, outer, inner, bone)
+    outer, inner = radius_voxels.thickened(vault, outer=outer, inner=inner)
+    piece = radius_voxels.voxels_between(vault, bone, outer=outer, inner=inner)
     return HullDesign(one, vault, outer, inner), voxel_pieces.keep_solid_piece(piece, one.sheet, bone)
 
 
-def _hull_radius(vault: RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+def _hull_radius(vault: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
     """Radius where rays across the hole leave the convex hull of a surface around it, shape (M, M), mm; else nan."""
     known = np.isfinite(radius) & ~vault.hole
-    directions = vault.directions
+    directions = vault.grid.directions
     points = np.concatenate([directions[known] * radius[known][:, None], np.zeros((1, 3))])
     facets = ConvexHull(points).equations  # n x + b <= 0 inside
     rays = directions[vault.hole]
@@ -154,7 +154,7 @@ def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[n
 
 def _by_slices(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening, slice by slice along the planes of the scan."""
-    vault = radius_map.look(bone, one)
+    vault = radius_measurement.measure_around(bone, one)
     first, end = one.planes
     px = float(bone.spacing[1:].mean())
     near = ndimage.binary_dilation(one.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
@@ -171,10 +171,10 @@ def _by_slices(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_
     )
 
 
-def _cone(vault: RadialChart, bone: Volume) -> NDArray[np.bool_]:
+def _cone(vault: RadiusMap, bone: Volume) -> NDArray[np.bool_]:
     """Voxels without bone in the directions of the hole, at any depth; beside it only as deep as its rim."""
     far, deep = (np.where(vault.hole, np.nanmedian(vault.outer) + d, np.nan) for d in (_ABOVE, -_BELOW))
-    return radius_map.voxelise(vault, far, deep, bone)
+    return radius_voxels.voxels_between(vault, bone, outer=far, inner=deep)
 
 
 def _slice(
@@ -204,12 +204,9 @@ def _slice(
     return nothing, "open ring"
 
 
-def _in_hole(vault: RadialChart, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _in_hole(vault: RadiusMap, points: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which world points (n, 3) are seen in the directions of the hole, shape (n,)."""
-    at = np.rint(vault.locate(points - vault.eye)).astype(np.intp)
-    known = ((at >= 0) & (at < len(vault.hole))).all(axis=0)
-    v, u = np.where(known, at, 0)
-    return vault.hole[v, u] & known
+    return vault.grid.at(vault.hole, points - vault.grid.centre, outside=False)
 
 
 def _in_hull(pixels: NDArray, points: NDArray, beyond: float) -> NDArray[np.bool_]:

@@ -26,7 +26,7 @@ from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import deformable_model, feature_extraction, prosthesis_volume
-from ..vault import opening_search, radius_map, slicing
+from ..vault import opening_search, radius_measurement, radius_voxels, slicing
 from ..vault.rims import RayProfile, fit_rims, share_tangents
 from ..volume import Volume
 from .assembly import assemble
@@ -212,13 +212,13 @@ def _fanned(
     bone: Volume, one: Opening, directions: int, skip: float, reach: float, coupling: float, curve: dict[str, Any]
 ) -> tuple[list[SlicedDesign], NDArray[np.bool_]]:
     """Slices of one opening in several directions, and the patch between the means of their curves."""
-    vault = radius_map.look(bone, one)
+    vault = radius_measurement.measure_around(bone, one)
     made, radii, weights = [], [], []
     for fan in slicing.fans(vault, directions):
         profile = slicing.profile(vault, fan)
         results = _carry(_inflate(_by_rays(profile, skip, reach, coupling), np.zeros(2), curve))
-        made.append(SlicedDesign(one, fan.frames(vault.eye), 1.0, tuple(results)))
-        at = fan.locate(vault.directions[vault.hole])
+        made.append(SlicedDesign(one, fan.frames(vault.grid.centre), 1.0, tuple(results)))
+        at = fan.locate(vault.grid.directions[vault.hole])
         both = [_on_rays(results, b, profile) for b in (0, 1)]
         radii.append([ndimage.map_coordinates(r, at, order=1, cval=np.nan) for r, _ in both])
         weights.append([ndimage.map_coordinates(w, at, order=1, cval=0.0) for _, w in both])
@@ -226,7 +226,8 @@ def _fanned(
     outer[vault.hole], inner[vault.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return made, np.zeros(bone.shape, bool)
-    return made, radius_map.voxelise(vault, *radius_map.thickened(vault, outer, inner), bone)
+    outer, inner = radius_voxels.thickened(vault, outer=outer, inner=inner)
+    return made, radius_voxels.voxels_between(vault, bone, outer=outer, inner=inner)
 
 
 def _weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -330,7 +330,7 @@ check.exercise("8.3", lid)
 # | paper | code | unit |
 # |---|---|---|
 # | convex hull, Fig. 6 | `cn.design(..., method="hull")` | |
-# | reflection | `symmetry.find`, `cn.design(..., method="reflection")` | degrees, mm |
+# | reflection | `symmetry.find_symmetry_plane`, `cn.design(..., method="reflection")` | degrees, mm |
 # | You et al. | `tetrahedra.extract`, `cn.design(..., method="you")` | mm |
 # | Table 3 | `against_truth.table3`, `paper_tables.PAPER_DISTANCES` | voxels |
 #

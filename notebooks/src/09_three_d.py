@@ -28,7 +28,7 @@ import numpy as np
 
 import cranio_nb as cn
 from cranio_nb.evaluation import against_truth
-from cranio_nb.vault import radius_map
+from cranio_nb.vault import radius_measurement
 from cranio_nb.teaching import check, classroom, pictures, widgets
 
 # %% [markdown]
@@ -60,9 +60,9 @@ true = against_truth.true_prosthesis(case.truth, bone, openings[0])
 # hole is its middle, and distances from the middle are true, as on a map of the world centred on the pole.
 
 # %% tags=["nbval-check-output"]
-vault = radius_map.look(bone, openings[0])
+vault = radius_measurement.measure_around(bone, openings[0])
 fig, panels = pictures.axes(2, height=3.8)
-half = (len(vault.outer) // 2 + 0.5) * vault.mm
+half = (len(vault.outer) // 2 + 0.5) * vault.step_mm
 maps = {"outer radius (mm)": vault.outer, "thickness (mm)": vault.outer - vault.inner}
 for ax, (name, values) in zip(panels, maps.items(), strict=True):
     beside = np.where(vault.hole, np.nan, values)
@@ -71,7 +71,7 @@ for ax, (name, values) in zip(panels, maps.items(), strict=True):
     ax.set(title=name, xlabel="mm", ylabel="mm")
 alt = "Two maps of the vault around the hole, which is white: outer radius, and thickness."
 n = len(vault.outer)
-pictures.picture(fig, alt, f"{n} x {n} rays, {vault.mm:.2f} mm apart")
+pictures.picture(fig, alt, f"{n} x {n} rays, {vault.step_mm:.2f} mm apart")
 
 # %% [markdown]
 # A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
@@ -387,7 +387,7 @@ pictures.picture(fig, alt, f"w = 0.71: radius {radius.min():.3f} to {radius.max(
 #
 # | paper | code | unit |
 # |---|---|---|
-# | the vault around the hole | `radius_map.look`, `RadialChart` | mm per ray |
+# | the vault around the hole | `radius_measurement.measure_around`, `RadiusMap` | mm per ray |
 # | 3D deformable model | `cn.design(..., method="thin-plate")` | mm |
 # | D-NURBS | `sheet_motion.relax`, `cn.design(..., method="dnurbs")` | mm |
 # | Table 3 | `against_truth.table3` | voxels |

@@ -62,8 +62,8 @@ def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, openings):
     """Every point of a slice's hull is a point of the hull in space."""
     (part,) = hull.design(skull("round"), openings("round")).working
     sliced = hull.design(skull("round"), openings("round"), axial=True).patch
-    away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.eye
-    v, u = np.rint(part.vault.locate(away)).astype(int)
+    away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.grid.centre
+    v, u = np.rint(part.vault.grid.locate(away)).astype(int)
     top = part.outer[v, u]
     above = np.linalg.norm(away, axis=1) - top
     assert np.quantile(above[np.isfinite(top)], 0.99) < 0.6 * sliced.spacing.max()

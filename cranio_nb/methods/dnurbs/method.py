@@ -35,7 +35,8 @@ from ...errors import NoOpening
 from ...geometry import voxel_pieces
 from ...opening import Opening
 from ...prosthesis import Prosthesis
-from ...vault import opening_search, radius_map
+from ...vault import opening_search, radius_measurement, radius_voxels
+from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
 from ..assembly import assemble
 from . import sheet, sheet_motion
@@ -53,7 +54,7 @@ class Sheets:
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
         The bone around the hole.
     outer, inner : Sheet
         At rest, in mm along the chart's axes from its eye.
@@ -65,7 +66,7 @@ class Sheets:
         Whether each came to rest.
     """
 
-    vault: radius_map.RadialChart
+    vault: RadiusMap
     outer: Sheet
     inner: Sheet
     settings: tuple[Setting, Setting]
@@ -128,9 +129,10 @@ def design(
     working, patch = [], np.zeros(bone.shape, bool)
     for i, one in enumerate(openings):
         tell("sheets", 0.9 * i / len(openings))
-        made = fit(radius_map.look(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
+        made = fit(radius_measurement.measure_around(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
-        piece = radius_map.voxelise(made.vault, *radius_map.thickened(made.vault, *radii), bone)
+        outer, inner = radius_voxels.thickened(made.vault, outer=radii[0], inner=radii[1])
+        piece = radius_voxels.voxels_between(made.vault, bone, outer=outer, inner=inner)
         patch |= voxel_pieces.keep_main_piece(piece, one.sheet.voxels)
         working.append(made)
     if not patch.any():
@@ -141,7 +143,7 @@ def design(
 
 
 def fit(
-    vault: radius_map.RadialChart,
+    vault: RadiusMap,
     *,
     wavelength: float,
     tension: float,
@@ -154,14 +156,14 @@ def fit(
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
     wavelength, tension, span, tol, max_iter
         As for `design`.
     dynamics : Dynamics, optional
         How the sheets move on from where frozen weights leave them; they stay there when not given.
     """
-    spans = (max(round((len(vault.outer) - 1) * vault.mm / span), 4),) * 2
-    size = (len(vault.outer) - 1) * vault.mm / spans[0]
+    spans = (max(round((len(vault.outer) - 1) * vault.step_mm / span), 4),) * 2
+    size = (len(vault.outer) - 1) * vault.step_mm / spans[0]
     material = Material.plate(tension, (wavelength / (2 * np.pi)) ** 4, (size, size))
     rests, settings = [], []
     for radius in (vault.outer, vault.inner):
@@ -180,31 +182,31 @@ def fit(
     return Sheets(vault, outer.sheet, inner.sheet, (settings[0], settings[1]), counts, ends)
 
 
-def springs_to(vault: radius_map.RadialChart, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
+def springs_to(vault: RadiusMap, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
     """A spring to one surface of the bone for every ray beside the hole that meets it, of unit strength per mm2.
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
     radius : ndarray, shape (M, M)
         The vault's outer or inner radii.
     spans : tuple of int
         Of the sheet.
     """
     known = np.isfinite(radius) & ~vault.hole
-    points = (vault.directions[known] * radius[known][:, None]) @ vault.axes.T
+    points = (vault.grid.directions[known] * radius[known][:, None]) @ vault.grid.axes.T
     v, u = (i * n / (len(radius) - 1) for i, n in zip(np.nonzero(known), spans, strict=True))
-    return Springs(points, v, u, np.full(len(points), vault.mm**2))
+    return Springs(points, v, u, np.full(len(points), vault.step_mm**2))
 
 
-def radii_of(one: Sheet, vault: radius_map.RadialChart) -> NDArray[np.float64]:
+def radii_of(one: Sheet, vault: RadiusMap) -> NDArray[np.float64]:
     """Radius of a sheet along every ray into the hole or near it, shape (M, M), mm; nan elsewhere.
 
     Parameters
     ----------
     one : Sheet
         In mm along the chart's axes from its eye.
-    vault : RadialChart
+    vault : RadiusMap
     """
     near = ndimage.binary_dilation(vault.hole, iterations=3)
     wanted = np.argwhere(near).astype(float)
@@ -212,13 +214,13 @@ def radii_of(one: Sheet, vault: radius_map.RadialChart) -> NDArray[np.float64]:
     at = wanted
     for _ in range(_FIND_STEPS):
         points = one.at(*(at * scale).T)
-        at = np.clip(at + wanted - vault.locate(points @ vault.axes).T, 0, len(vault.outer) - 1)
+        at = np.clip(at + wanted - vault.grid.locate(points @ vault.grid.axes).T, 0, len(vault.outer) - 1)
     radius = np.full(vault.hole.shape, np.nan)
     radius[near] = np.linalg.norm(one.at(*(at * scale).T), axis=1)
     return radius
 
 
-def _sphere(points: NDArray[np.float64], vault: radius_map.RadialChart, spans: tuple[int, int]) -> Sheet:
+def _sphere(points: NDArray[np.float64], vault: RadiusMap, spans: tuple[int, int]) -> Sheet:
     """The sheet on the sphere that best fits points around the hole, each ray at its own place."""
     system = np.column_stack([2 * points, np.ones(len(points))])
     squares, weight = (points**2).sum(axis=1), np.ones(len(points))
@@ -227,7 +229,7 @@ def _sphere(points: NDArray[np.float64], vault: radius_map.RadialChart, spans: t
         radius = np.sqrt(x[3] + x[:3] @ x[:3])
         off = np.abs(np.linalg.norm(points - x[:3], axis=1) - radius)
         weight = 1 / (1 + (off / (3 * np.median(off) + 1e-6)) ** 2)
-    along = vault.directions @ vault.axes.T
+    along = vault.grid.directions @ vault.grid.axes.T
     middle = along @ x[:3]
     away = middle + np.sqrt(np.maximum(middle**2 + x[3], 0.0))
     v, u = np.indices(away.shape).reshape(2, -1) * np.array(spans)[:, None] / (len(away) - 1)
@@ -235,7 +237,7 @@ def _sphere(points: NDArray[np.float64], vault: radius_map.RadialChart, spans: t
     return sheet.settle(springs, sheet.flat(spans), Material((0.0, 0.0, 1e-6, 1e-6, 1e-6)))[0]
 
 
-def _inside(vault: radius_map.RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+def _inside(vault: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
     """A radius map with nan outside the hole."""
     return np.where(vault.hole, radius, np.nan)
 

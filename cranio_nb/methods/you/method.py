@@ -34,7 +34,8 @@ from ...geometry import voxel_pieces
 from ...mesh import Mesh
 from ...opening import Opening
 from ...prosthesis import Prosthesis
-from ...vault import opening_search, radius_map
+from ...vault import opening_search, radius_measurement
+from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
 from ..assembly import assemble
 from . import membrane, mesh_to_voxels, tetrahedra
@@ -112,7 +113,7 @@ def design(
     """
     began = time.perf_counter()
     openings = opening_search.find_openings(bone) if openings is None else openings
-    guides = [find_guides(radius_map.look(bone, one), n_guides) for one in openings]
+    guides = [find_guides(radius_measurement.measure_around(bone, one), n_guides) for one in openings]
     made = design_from_guides(bone, openings, guides, smooth=smooth, progress=progress)
     options = {"n_guides": n_guides, "smooth": smooth}
     return replace(made, parameters=options, record=made.record | {"seconds": time.perf_counter() - began})
@@ -157,7 +158,7 @@ def design_from_guides(
     return assemble(patch, bone, openings, "you", options, began=began, working=working, record={"fills": fills})
 
 
-def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.float64]:
+def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     """Points on the outer surface at even steps around a hole, shape (n_guides, 3), world mm."""
     soft = ndimage.gaussian_filter(vault.hole.astype(float), 1.5)
     outline = max(find_contours(np.pad(soft, 1), 0.5), key=len)[:-1] - 1
@@ -167,7 +168,7 @@ def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.floa
     v, u = (np.rint(np.interp(at, along, c)).astype(int) for c in closed.T)
     unknown = vault.hole | ~np.isfinite(vault.outer)
     v, u = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)[:, v, u]
-    return vault.eye + vault.directions[v, u] * vault.outer[v, u, None]
+    return vault.grid.centre + vault.grid.directions[v, u] * vault.outer[v, u, None]
 
 
 def fill_between(bone: Volume, one: Opening, guides: NDArray[np.float64]) -> Filling:

@@ -18,8 +18,8 @@ from ...methods.you import mesh_to_voxels
 from ...methods.you import method as you
 from ...opening import Opening
 from ...prosthesis import OUTER, Prosthesis
-from ...vault import radius_map, symmetry
-from ...vault.radius_map import RadialChart
+from ...vault import radius_measurement, symmetry
+from ...vault.ray_grid import RadiusMap
 from ...vault.symmetry import OuterSurface, SymmetryPlane
 from ...volume import Volume
 from .controls import Slider, View
@@ -68,7 +68,7 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
     Panel
         Control ``n``.
     """
-    vault, plane = radius_map.look(bone, opening), sum(opening.planes) // 2
+    vault, plane = radius_measurement.measure_around(bone, opening), sum(opening.planes) // 2
     made = lru_cache(maxsize=None)(lambda n: _flat_fill(bone, opening, vault, n, plane, truth))
     lost = np.zeros(bone.shape[1:], bool) if truth is None or truth.patch is None else truth.patch.voxels[plane]
     alt = "The hole from outside with guiding points, rim and fill; beside it a slice with the fill and what it misses."
@@ -77,7 +77,7 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
 
 
 def _flat_fill(
-    bone: Volume, opening: Opening, vault: RadialChart, n: int, plane: int, truth: Prosthesis | None
+    bone: Volume, opening: Opening, vault: RadiusMap, n: int, plane: int, truth: Prosthesis | None
 ) -> FlatFill:
     """Fill a hole between `n` guiding points and measure it."""
     made = you.fill_between(bone, opening, you.find_guides(vault, n))
@@ -144,7 +144,10 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     Panel
         Controls ``turn_deg``, ``lean_deg`` and ``shift_mm``.
     """
-    found, surface = symmetry.find(bone, opening.head_centre), symmetry.look(bone, opening.head_centre)
+    found, surface = (
+        symmetry.find_symmetry_plane(bone, opening.head_centre),
+        symmetry.measure_outer_surface(bone, opening.head_centre),
+    )
     plane = sum(opening.planes) // 2
     controls = (
         Slider("turn_deg", "turned about the upright axis (degrees)", -10.0, 10.0, 0.0, 0.5),

@@ -21,7 +21,7 @@ from cranio_nb.prosthesis import INNER, OUTER
 from cranio_nb.stages import deformable_model, feature_extraction, segmentation
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets import inflation, tuning
-from cranio_nb.vault import radius_map, symmetry
+from cranio_nb.vault import radius_measurement, symmetry
 from cranio_nb.volume import Volume
 
 
@@ -300,7 +300,9 @@ def test_the_map_of_distances_shows_the_distances_of_the_nodes(design, true):
 
 def test_guiding_points_say_what_the_method_fills(static, skull, openings, true):
     panel = widgets.guiding_points(skull(), openings()[0], true).set(n=8)
-    made = you.fill_between(skull(), openings()[0], you.find_guides(radius_map.look(skull(), openings()[0]), 8))
+    made = you.fill_between(
+        skull(), openings()[0], you.find_guides(radius_measurement.measure_around(skull(), openings()[0]), 8)
+    )
     off = scores.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
     assert panel.view.line.startswith("8 guiding points: ")
     assert f"{off.mean():.2f} mm from the true surface on average, {off.max():.2f} mm at most" in panel.view.line
@@ -312,7 +314,7 @@ def test_guiding_points_need_no_truth(static, skull, openings):
 
 
 def test_the_found_plane_has_the_least_residual(static, skull, openings):
-    found = symmetry.find(skull(), openings()[0].head_centre)
+    found = symmetry.find_symmetry_plane(skull(), openings()[0].head_centre)
     panel = widgets.symmetry_plane(skull(), openings()[0])
     moves = ({}, {"turn": 4.0}, {"turn": 0.0, "lean": -5.0}, {"lean": 0.0, "shift": 3.0})
     lines = [panel.set(**move).view.line for move in moves]
@@ -323,7 +325,7 @@ def test_the_found_plane_has_the_least_residual(static, skull, openings):
 
 def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, openings):
     centre = openings()[0].head_centre
-    found, surface = symmetry.find(skull(), centre), symmetry.look(skull(), centre)
+    found, surface = symmetry.find_symmetry_plane(skull(), centre), symmetry.measure_outer_surface(skull(), centre)
     other = widgets.rivals.moved(found, surface, turn=0.0, lean=0.0, shift=1.0)
     np.testing.assert_allclose(other.mirror(centre) - found.mirror(centre), 2 * found.normal, atol=1e-9)
 
@@ -339,7 +341,7 @@ def test_a_plate_that_is_held_by_nothing_errs_most(static, skull, openings, true
 
 
 def test_the_hole_of_a_coarse_chart_holds_the_hole_and_nothing_far_from_it(skull, openings):
-    fine = radius_map.look(skull(), openings()[0])
+    fine = radius_measurement.measure_around(skull(), openings()[0])
     vault = widgets.plates.coarse(fine, 3)
     start = (len(fine.hole) // 2) % 3
     assert vault.hole[fine.hole[start::3, start::3]].all()
@@ -353,7 +355,7 @@ def test_panels_of_plates_need_no_truth(static, skull, openings):
 
 
 def test_mass_and_friction_do_not_move_the_place_of_rest(skull, openings):
-    vault = widgets.plates.coarse(radius_map.look(skull(), openings()[0]), 4)
+    vault = widgets.plates.coarse(radius_measurement.measure_around(skull(), openings()[0]), 4)
     ways = [widgets.plates.relaxing(vault, 40.0, mass, damping) for mass, damping in ((0.0, 1.0), (3.0, 2.0))]
     first, second = (way.motions[-1].sheet.control for way in ways)
     assert all(way.motions[-1].converged for way in ways)

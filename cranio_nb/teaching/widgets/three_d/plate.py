@@ -17,7 +17,7 @@ from ....errors import InputRefused
 from ....methods import thin_plate
 from ....opening import Opening
 from ....prosthesis import Prosthesis
-from ....vault import radius_map, symmetry
+from ....vault import radius_measurement, symmetry
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
@@ -44,10 +44,12 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
     Panel
         Controls ``second_mm``, ``third_mm`` and ``mirror_mm``.
     """
-    fine = radius_map.look(bone, opening)
+    fine = radius_measurement.measure_around(bone, opening)
     scene = make_scene(fine, bone, truth, _EVERY)
     try:
-        other = radius_map.along(fine, symmetry.find(bone, opening.head_centre).mirrored(bone))
+        other = radius_measurement.measure_along(
+            fine, symmetry.find_symmetry_plane(bone, opening.head_centre).mirrored(bone)
+        )
         scene = replace(scene, mirrored=thin_rays(other, _EVERY).outer)
     except InputRefused:  # no plane of symmetry: the third slider has no effect
         pass
@@ -64,8 +66,15 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
 def _bend(scene: Scene, *, second_mm: float, third_mm: float, mirror_mm: float) -> Array:
     """Outer radii of the plate in the hole and beside it, shape (M, M), mm; nan elsewhere."""
     vault = scene.vault
-    strengths = {"second": second_mm, "third": third_mm, "likeness": mirror_mm}
-    return thin_plate.bend(vault.outer, vault.hole, vault.mm, like=scene.mirrored, **strengths)
+    return thin_plate.bend(
+        vault.outer,
+        vault.hole,
+        vault.step_mm,
+        like=scene.mirrored,
+        second=second_mm,
+        third=third_mm,
+        likeness=mirror_mm,
+    )
 
 
 def _view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
@@ -105,7 +114,7 @@ def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_]) -> None:
 def _draw_profile(canvas: Canvas, scene: Scene, plate: Array) -> None:
     """Radii along the chart's middle row: bone, truth and plate."""
     vault, row = scene.vault, len(plate) // 2
-    x = (np.arange(len(plate)) - row) * vault.mm
+    x = (np.arange(len(plate)) - row) * vault.step_mm
     near = np.isfinite(plate[row])
     bone = np.where(vault.hole, np.nan, vault.outer)[row]
     radii = np.concatenate([bone[near], scene.true[row][near]])

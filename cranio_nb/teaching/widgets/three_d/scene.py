@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 
 from ....methods import thin_plate
 from ....prosthesis import Prosthesis
-from ....vault import radius_map
-from ....vault.radius_map import RadialChart
+from ....vault import radius_measurement
+from ....vault.ray_grid import RadiusMap
 from ....volume import Volume
 
 SIDE, WIDE = 440, 460  # px: the square at the left, and the chart beside it
@@ -28,7 +28,7 @@ class Scene:
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
         Of every third or fourth ray.
     true : ndarray, shape (M, M)
         Radii of the outer surface with the missing bone in its place, mm; nan where none is known.
@@ -36,37 +36,38 @@ class Scene:
         Outer radii of the other side of the skull.
     """
 
-    vault: RadialChart
+    vault: RadiusMap
     true: Array
     mirrored: Array | None = None
 
 
-def thin_rays(vault: RadialChart, every: int) -> RadialChart:
+def thin_rays(vault: RadiusMap, every: int) -> RadiusMap:
     """Keep every n-th ray of a radius map, counted from its middle; radii become means of their neighbours.
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
         N x N rays.
     every : int
 
     Returns
     -------
-    RadialChart
+    RadiusMap
         Its hole holds the hole of the finer map.
     """
     shown = [np.where(vault.hole, np.nan, radius) for radius in (vault.outer, vault.inner)]
     outer, inner = (thin_plate.thinned(radius, every) for radius in shown)
     hole = thin_plate.thinned(vault.hole.astype(float), every) > _ANY
-    return replace(vault, step=vault.step * every, outer=outer, inner=inner, hole=hole)
+    grid = replace(vault.grid, step_rad=vault.grid.step_rad * every, n=len(outer))
+    return replace(vault, grid=grid, outer=outer, inner=inner, hole=hole)
 
 
-def make_scene(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
+def make_scene(fine: RadiusMap, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
     """The vault around a hole and, where it is known, the bone that is missing in it.
 
     Parameters
     ----------
-    fine : RadialChart
+    fine : RadiusMap
         Radius map of the hole.
     bone : Volume
         Bool mask of the skull.
@@ -82,7 +83,7 @@ def make_scene(fine: RadialChart, bone: Volume, truth: Prosthesis | None, every:
     vault = thin_rays(fine, every)
     if truth is None or truth.patch is None:
         return Scene(vault, np.where(vault.hole, np.nan, vault.outer))
-    whole = radius_map.along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
+    whole = radius_measurement.measure_along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
     return Scene(vault, thin_plate.thinned(whole.outer, every))
 
 

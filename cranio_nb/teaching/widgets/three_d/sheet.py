@@ -18,8 +18,8 @@ from ....methods.dnurbs.sheet import Sheet
 from ....methods.dnurbs.sheet_motion import Dynamics, Motion, Setting
 from ....opening import Opening
 from ....prosthesis import Prosthesis
-from ....vault import radius_map
-from ....vault.radius_map import RadialChart
+from ....vault import radius_measurement
+from ....vault.ray_grid import RadiusMap
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
@@ -65,7 +65,7 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     Panel
         Controls ``wavelength_mm``, ``mass``, ``damping`` and ``step``.
     """
-    scene = make_scene(radius_map.look(bone, opening), bone, truth, _EVERY)
+    scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
     run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.vault, **values))
     controls = (
         Slider("wavelength_mm", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
@@ -80,12 +80,12 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     return Panel(controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, slow=True)
 
 
-def relax_sheet(vault: RadialChart, *, wavelength_mm: float, mass: float, damping: float) -> Way:
+def relax_sheet(vault: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
     """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps.
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
         Of few rays, or it takes long.
     wavelength_mm : float
         Ripples of this length are halved.
