@@ -245,7 +245,7 @@ def skeleton(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
     >>> skeleton(np.eye(3, dtype=bool)).tolist()
     [[0, 0], [1, 1], [2, 2]]
     """
-    return np.argwhere(skeletonize(mask))
+    return np.argwhere(skeletonize(np.array(mask)))  # a copy: it takes no read-only array
 
 
 def distance_to_curve(points: NDArray[np.float64], curve: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -144,10 +144,8 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     Panel
         Controls ``turn_deg``, ``lean_deg`` and ``shift_mm``.
     """
-    found, surface = (
-        symmetry.find_symmetry_plane(bone, opening.head_centre),
-        symmetry.measure_outer_surface(bone, opening.head_centre),
-    )
+    found = symmetry.find_symmetry_plane(bone, opening.head_centre)
+    surface = symmetry.measure_outer_surface(bone, opening.head_centre)
     plane = sum(opening.planes) // 2
     controls = (
         Slider("turn_deg", "turned about the upright axis (degrees)", -10.0, 10.0, 0.0, 0.5),
@@ -212,11 +210,7 @@ def _mirrored_slice(bone: Volume, mirror: SymmetryPlane, plane: int) -> Canvas:
     mask = bone.voxels[plane]
     pixels = np.stack([np.full(mask.shape, plane), *np.indices(mask.shape)], axis=-1)
     world = bone.to_world(pixels.reshape(-1, 3))
-    index = np.rint(bone.to_voxel(mirror.mirror(world))).astype(np.intp)
-    inside = ((index >= 0) & (index < bone.shape)).all(axis=1)
-    image = np.zeros(mask.size, bool)
-    image[inside] = bone.voxels[tuple(index[inside].T)]
-    image = image.reshape(mask.shape)
+    image = bone.at(mirror.mirror(world), outside=False).reshape(mask.shape)
     canvas = Canvas(_SIDE, _SIDE)
     window = Window.whole((0, 0, _SIDE, _SIDE), mask.shape)
     canvas.show(tinted(tinted(tinted(plain(mask.shape), image, SKY), mask, ORANGE), mask & image, BONE), window)
