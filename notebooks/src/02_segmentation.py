@@ -38,7 +38,7 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # |---|---|---|---|
 # | `threshold` | lowest HU of bone | HU | 400 |
 # | `upper` | highest HU of bone | HU | 1000 (we set none) |
-# | `max_hole` | holes up to this area are filled | mm2 in `cn.segment`, px in `segmentation.fill_holes` | not given |
+# | `max_hole_mm2` | holes up to this area are filled (`max_hole_px` in `segmentation.fill_holes`) | mm2 | not given |
 # | `min_part` | loose parts under this share of the skull go | share, e.g. 0.02 | not given |
 #
 # *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
@@ -51,7 +51,7 @@ ct, px = case.ct, case.px
 # ## 1. The threshold
 #
 # **Predict, then move, then explain.** What changes *most* if you raise the threshold from 400 to 800 HU: the outline
-# of the bone, or its inside? (No sliders? Use `panel.set(hu=800)` in a new cell.)
+# of the bone, or its inside? (No sliders? Use `panel.set(threshold_hu=800)` in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.threshold(ct)
@@ -116,9 +116,7 @@ if case.phantom is not None:
 # picture shows a piece of 40 x 40 mm.
 
 # %%
-plane = max(
-    cn.find_openings(masks[2])[0].planes[0] - 4, 0
-)  # below the hole the ring is closed
+plane = max(cn.find_openings(masks[2])[0].planes[0] - 4, 0)  # below the hole the ring is closed
 raw = segmentation.apply_threshold(ct.voxels, 700)
 filled = segmentation.fill_holes(raw, max_hole_px=60 / px**2)  # 60 mm2, in pixels
 added = filled[plane] & ~raw[plane]

@@ -34,8 +34,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 #
 # | name | meaning | unit in the code | unit of the sliders | paper |
 # |---|---|---|---|---|
-# | `skip` | boundary left out next to the gap | px along the bone | mm | 10 points = 4.5 mm |
-# | `reach` | boundary that carries the tangent, after that | px along the bone | mm | not given |
+# | `skip` | boundary left out next to the gap | `skip_px`, along the bone | mm | 10 points = 4.5 mm |
+# | `reach` | boundary that carries the tangent, after that | `reach_px`, along the bone | mm | not given |
 #
 # The paper's pixels are 0.45 mm, so its 10 points are 4.5 mm. In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are
 # 5 px here, and 10 px are 9 mm.
@@ -46,7 +46,7 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 case = classroom.load("class")
 bone = cn.segment(case.ct)
 opening = cn.find_openings(bone)[0]
-plane = classroom.bridged_plane(bone, opening, skip_px=5, reach_px=10)
+plane = classroom.bridged_plane(bone, opening, skip_px=5, reach_px=6)
 mask, px = bone.voxels[plane], case.px
 
 # %% [markdown]
@@ -119,7 +119,7 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 #
 # In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used.
 #
-# **Predict, then move, then explain.**
+# **Predict, then move, then explain.** (No sliders? Use `panel.set(skip_mm=0)` in a new cell, and `reach_mm`, `plane`.)
 #
 # 1. Move `skip` to 0: what do the tangents do, and the white circles?
 # 2. Put `skip` back to 4.5 mm and `reach` to 6 mm, and step through the slices around this one. Then make `reach`
@@ -127,14 +127,15 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # 3. Move `reach` to 40 mm.
 
 # %% tags=["nbval-check-output"]
-widgets.features(bone, plane, opening=opening.sheet)
+panel = widgets.features(bone, plane, opening=opening.sheet)
+panel
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
-# 1. Pixels of the cut face join the fit and turn the line. The white circles move into the cut face: the outer ends
-#    stand 57 mm apart, and the true gap is 65 mm wide.
+# 1. Pixels of the cut face join the fit and turn the line. The white circles move into the cut face: the gap seems
+#    narrower than it is (section 4 prints both lengths).
 # 2. A few pixels of a staircase: the line jumps by some 10 degrees from slice to slice (noise). With fewer than 4
 #    pixels the package refuses to fit a line.
 # 3. The bone is curved, and the line shows the direction in the *middle* of the neighbourhood, not at the end (bias).
@@ -208,17 +209,19 @@ for skip, reach in settings:
     print(f"skip {skip:2} px, reach {reach:2} px: {off} ({len(steeper)} slices)")
 
 # %% [markdown]
-# With `reach` 6, 10, 25 px the scatter falls and the mean error grows: that is the trade of noise against bias. With
-# `skip` = 0 the cut face adds an error of its own, and a larger one. From `skip` 3 to 10 px the angles grow mostly
-# because the gap is wider.
+# With `reach` 6, 10, 25 px the scatter falls and the mean error grows: that is the trade of noise against bias. With 6
+# px some slices are refused, too. With `skip` = 0 the cut face adds an error of its own, and a larger one. From `skip` 5
+# to 10 px the angles grow mostly because the gap is wider.
 #
-# **Question.** The paper leaves out "10 points". On a scan with pixels half as large, is this the same?
+# **Question.** The paper leaves out "10 points". On a scan with pixels twice as large, is this the same?
 #
 # <details>
 # <summary>Answer</summary>
 #
-# No: 10 px of 0.9 mm are 9 mm, 10 px of 0.45 mm are 4.5 mm. A length of the patient should be given in mm. The
-# sliders above do so, and so do the options of `cn.design`.
+# No: 10 px of 0.9 mm are 9 mm, 10 px of 0.45 mm are 4.5 mm. The cut face is a part of the patient, and its depth should
+# be given in mm. The sliders above do so, and so do the options of `cn.design`. What it costs to count points instead
+# is measured in lesson 05. (`reach` is not as simple: the curvature of a skull is measured in mm, but the noise of a line
+# falls with the number of its points. The paper's 4.5 mm would be 5 px here, hardly enough for a line.)
 #
 # </details>
 #

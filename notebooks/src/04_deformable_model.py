@@ -67,7 +67,9 @@ inside = bone.to_voxel(opening.head_centre)[1:]
 
 # %% tags=["nbval-check-output"]
 seen = feature_extraction.extract_features(bone.voxels[plane])
-outer, inner = feature_extraction.find_gap_ends(seen, opening.sheet.voxels[plane], skip_px=3, reach_px=10)
+outer, inner = feature_extraction.find_gap_ends(
+    seen, opening.sheet.voxels[plane], skip_px=3, reach_px=10
+)
 frame = ChordFrame.of(outer, inside)
 theta0, theta1 = frame.end_angles(outer)
 start = cubic(frame.length, theta0, theta1, 21)
@@ -157,7 +159,9 @@ def relax(chord, k, *, n=N_SNAXELS, dt=1.0, turn=0):
     """The balloon across a gap in the circle, from the cubic."""
     angles = gap(chord, turn)
     slopes = np.array([[chord, chord * np.tan(t)] for t in angles]) / (n - 1)
-    return deformable_model.inflate(cubic(chord, *angles, n), slopes, pressure=k, dt=dt, max_iter=20_000)
+    return deformable_model.inflate(
+        cubic(chord, *angles, n), slopes, pressure=k, dt=dt, max_iter=20_000
+    )
 
 
 # %% tags=["nbval-check-output"]
@@ -209,7 +213,9 @@ def by_spiral(chord):
         * total
         / (N_SNAXELS - 1)
     )
-    return deformable_model.inflate(curve, slopes, pressure=deformable_model.curvature_pressure(total, curvature))
+    return deformable_model.inflate(
+        curve, slopes, pressure=deformable_model.curvature_pressure(total, curvature)
+    )
 
 
 # %% tags=["nbval-check-output"]
@@ -343,7 +349,10 @@ slopes = frame.length * np.array([[1, np.tan(theta0)], [1, np.tan(theta1)]]) / (
 k_tangent = deformable_model.tangent_pressure(frame.length, theta0, theta1, N_SNAXELS)
 arches = {
     f"{name} ({k:.3f})": case.px * deformable_model.inflate(start, slopes, pressure=k).curve
-    for name, k in (("the paper's k", deformable_model.PAPER_PRESSURE), ("tangent pressure", k_tangent))
+    for name, k in (
+        ("the paper's k", deformable_model.PAPER_PRESSURE),
+        ("tangent pressure", k_tangent),
+    )
 }
 for truth in case.true_curves(plane)[:1]:
     arches["true bone"] = case.px * frame.to_chord(truth)
@@ -407,7 +416,9 @@ def bridge(length, theta0, theta1, n):
     slopes = np.array(
         [[length, length * np.tan(theta0)], [length, length * np.tan(theta1)]]
     ) / (n - 1)
-    return deformable_model.inflate(start, slopes, pressure=deformable_model.tangent_pressure(length, theta0, theta1, n)).curve
+    return deformable_model.inflate(
+        start, slopes, pressure=deformable_model.tangent_pressure(length, theta0, theta1, n)
+    ).curve
 
 
 # %% tags=["check", "nbval-check-output"]
@@ -420,9 +431,7 @@ pictures.plot_lines(
     ax, np.linspace(0, 1, 21), curves, xlabel="along the gap (part of L)", ylabel="height (px)"
 )
 alt = "Four arches over one base; the wider the gap the higher, from 2 to 18 px."
-pictures.picture(
-    fig, alt, ", ".join(f"{name}: {y.max():.1f} px" for name, y in curves.items())
-)
+pictures.picture(fig, alt, ", ".join(f"{name}: {y.max():.1f} px" for name, y in curves.items()))
 
 # %% [markdown]
 # ## Summary

@@ -165,7 +165,9 @@ panel = widgets.patch(bone, opening)
 panel
 
 # %% tags=["nbval-check-output"]
-own_k = cn.design(bone, openings, **preset, pressure_mm=None)  # the pressure from the end tangents
+own_k = cn.design(
+    bone, openings, **preset, pressure_mm=None
+)  # the pressure from the end tangents
 balloons = [s for s in own_k.record["slices"] if s["status"] == "balloon"]
 for s in balloons[:2] + balloons[-3:]:
     at = s["plane"] + first

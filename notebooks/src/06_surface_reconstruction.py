@@ -69,7 +69,9 @@ fig, panels = pictures.axes(2, height=4.4)
 for ax, (name, mesh) in zip(panels, {"raw": raw, "smooth": smooth}.items(), strict=True):
     pictures.show_meshes(ax, [(mesh, pictures.BLUE)], towards, title=name, px=0.14)
 alt = "The prosthesis twice: raw with steps like the contour lines of a map; smoothed without."
-pictures.picture(fig, alt, f"area {raw.areas.sum() / 100:.1f} and {smooth.areas.sum() / 100:.1f} cm2")
+pictures.picture(
+    fig, alt, f"area {raw.areas.sum() / 100:.1f} and {smooth.areas.sum() / 100:.1f} cm2"
+)
 
 # %% [markdown]
 # <details>
@@ -92,7 +94,9 @@ pictures.picture(fig, alt, f"area {raw.areas.sum() / 100:.1f} and {smooth.areas.
 # %% tags=["nbval-check-output"]
 moved = surface_reconstruction.measure_deviation(raw, smooth)
 bound = np.linalg.norm(patch.spacing) / 2
-print(f"moved by {moved.mean:.2f} mm on average, {moved.max:.2f} at most; allowed {bound:.2f}")
+print(
+    f"moved by {moved.mean_mm:.2f} mm on average, {moved.max_mm:.2f} at most; allowed {bound:.2f}"
+)
 print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm3 after")
 
 # %% [markdown]
@@ -106,7 +110,9 @@ widgets.surface(patch)
 for steps in (0, 1, 5, 10, 24, 200):
     after = surface_reconstruction.extract_surface(patch, n_steps=steps)
     moved = surface_reconstruction.measure_deviation(raw, after)
-    print(f"{steps:3} steps: area {after.areas.sum() / 100:.2f} cm2, moved {moved.mean:.2f} mm")
+    print(
+        f"{steps:3} steps: area {after.areas.sum() / 100:.2f} cm2, moved {moved.mean_mm:.2f} mm"
+    )
 
 # %% [markdown]
 # <details>

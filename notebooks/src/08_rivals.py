@@ -67,9 +67,7 @@ fig, (ax,) = pictures.axes(height=3.0)
 pictures.plot_lines(ax, diameters, depths, xlabel="hole (mm)", ylabel="too deep (mm)")
 alt = "Three curves, depth of a flat lid against the hole's diameter: they rise ever steeper."
 at_40, at_95 = (75 - np.sqrt(75**2 - d**2 / 4) for d in (40, 95))
-pictures.picture(
-    fig, alt, f"R = 75 mm: {at_40:.1f} mm for a hole of 40 mm, {at_95:.1f} for 95"
-)
+pictures.picture(fig, alt, f"R = 75 mm: {at_40:.1f} mm for a hole of 40 mm, {at_95:.1f} for 95")
 
 # %% [markdown]
 # <details>
@@ -108,7 +106,7 @@ print(f"residual {plane['residual_mm']:.2f} mm (median)")
 # **Predict, then move, then explain.** You set the plane by hand and are off: by 3 degrees of *turn* (about the upright
 # axis), by 3 degrees of *lean* (to a side), or by 1 mm of *shift*. Which one costs most?
 #
-# Controls: `turn`, `lean` and `shift`, e.g. `mirror.set(turn=3)`.
+# Controls: `turn_deg`, `lean_deg` and `shift_mm`, e.g. `mirror.set(turn_deg=3)`.
 
 # %% tags=["nbval-check-output"]
 mirror = widgets.symmetry_plane(bone, openings[0])
@@ -116,7 +114,7 @@ mirror
 
 # %% tags=["nbval-check-output"]
 for turn, lean, shift in ((3, 0, 0), (0, 3, 0), (0, 0, 1)):
-    print(mirror.set(turn=turn, lean=lean, shift=shift).view.line)
+    print(mirror.set(turn_deg=turn, lean_deg=lean, shift_mm=shift).view.line)
 
 # %% [markdown]
 # <details>

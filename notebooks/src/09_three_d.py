@@ -28,20 +28,20 @@ import numpy as np
 
 import cranio_nb as cn
 from cranio_nb.evaluation import against_truth
-from cranio_nb.vault import radius_measurement
 from cranio_nb.teaching import check, classroom, pictures, widgets
+from cranio_nb.vault import radius_measurement
 
 # %% [markdown]
 # ## Parameters
 #
 # | method | name | meaning | unit | here |
 # |---|---|---|---|---|
-# | thin plate | `second`, a | length over which the second order smooths | mm | 1.3 |
-# | thin plate | `third`, b | the same for the third order | mm | 1.8 |
-# | thin plate | `mirror`, c | the same towards the other side's curvature | mm | 1.6 |
+# | thin plate | `second_mm`, a | length over which the second order smooths | mm | 1.3 |
+# | thin plate | `third_mm`, b | the same for the third order | mm | 1.8 |
+# | thin plate | `mirror_mm`, c | the same towards the other side's curvature | mm | 1.6 |
 # | thin plate | `prior` | a file of `cranio-nb prior learn` | | none |
-# | D-NURBS | `wavelength` | ripples of this length are halved | mm | 20 |
-# | D-NURBS | `span` | between the knots | mm | 8 |
+# | D-NURBS | `wavelength_mm` | ripples of this length are halved | mm | 20 |
+# | D-NURBS | `span_mm` | between the knots | mm | 8 |
 #
 # *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, as in lesson 07. The
 # numbers in the answers are those of `"class"`.
@@ -151,7 +151,7 @@ for a, b in ((2, 0), (8.5, 0), (10, 0), (0, 2), (0, 6), (0, 10), (8.5, 11)):
 # **Predict, then move, then explain.** In the hole of our head the map's radius falls and rises again. Will the second
 # order alone, made strong (a = 12), be too high or too deep? And the third alone at b = 1.8? What if all three are 0?
 #
-# Controls: `second`, `third`, `mirror`, e.g. `plate.set(second=12, third=0, mirror=0)`.
+# Controls: `second_mm`, `third_mm`, `mirror_mm`, e.g. `plate.set(second_mm=12, third_mm=0, mirror_mm=0)`.
 
 # %% tags=["nbval-check-output"]
 plate = widgets.bent_plate(bone, openings[0], true)
@@ -160,7 +160,7 @@ plate
 # %% tags=["nbval-check-output"]
 trials = (12, 0, 0), (1.3, 0, 0), (0, 1.8, 0), (1.3, 1.8, 0), (1.3, 1.8, 1.6), (0, 0, 0)
 for a, b, c in trials:
-    print(plate.set(second=a, third=b, mirror=c).view.line.split(" in the hole")[0])
+    print(plate.set(second_mm=a, third_mm=b, mirror_mm=c).view.line.split(" in the hole")[0])
 
 # %% [markdown]
 # <details>
@@ -220,7 +220,7 @@ for a, b, c in trials:
 # **Predict, then move, then explain.** The sheet is pushed into the head and let go. Does a heavier sheet, or one with
 # more friction, come to rest elsewhere? Does a stiffer one? And where do the control points lie, on the sheet?
 #
-# Controls: `wavelength` (the stiffness: longer is stiffer), `mass`, `damping` (the friction) and `step`, e.g.
+# Controls: `wavelength_mm` (the stiffness: longer is stiffer), `mass`, `damping` (the friction) and `step`, e.g.
 # `elastic.set(mass=3)`. The panel takes 40 steps at most; a sheet that is "not at rest" then is still on its way.
 
 # %% tags=["nbval-check-output"]
@@ -228,7 +228,7 @@ elastic = widgets.elastic_sheet(bone, openings[0], true)
 elastic
 
 # %% tags=["nbval-check-output"]
-for moved in ({"step": 1}, {"step": 40}, {"mass": 3}, {"mass": 1, "wavelength": 80}):
+for moved in ({"step": 1}, {"step": 40}, {"mass": 3}, {"mass": 1, "wavelength_mm": 80}):
     print(moved, elastic.set(**moved).view.line, sep="\n  ")
 
 # %% [markdown]
@@ -255,9 +255,7 @@ methods = {"slice method": "slicewise", "thin plate": "thin-plate", "D-NURBS": "
 made = {name: cn.design(bone, openings, method=m) for name, m in methods.items()}
 skull = cn.segment(wide.ct)
 largest = cn.find_openings(skull)
-over = {
-    name: cn.design(skull, largest, method=m, smooth=False) for name, m in methods.items()
-}
+over = {name: cn.design(skull, largest, method=m, smooth=False) for name, m in methods.items()}
 
 # %% tags=["nbval-check-output"]
 print("              outer mean   max   inner mean   max    Dice    large: Dice  HD95 (mm)")

@@ -49,7 +49,10 @@ case = classroom.load("class", needs_truth=True)
 bone, px = cn.segment(case.ct), case.px
 openings = cn.find_openings(bone)
 first = max(openings[0].planes[0] - 2, 0)  # plane of the first slice: two below the hole
-preset = {"preset": "paper", "reach_mm": 10 * px}  # the paper does not say over what length it fits
+preset = {
+    "preset": "paper",
+    "reach_mm": 10 * px,
+}  # the paper does not say over what length it fits
 paper = cn.design(bone, openings, **preset)
 ours = cn.design(bone, openings)
 
@@ -166,9 +169,10 @@ print_row("printed: You", printed["You et al."])
 # the height of the cap that the flat fill leaves out.
 
 # %% tags=["nbval-check-output"]
-tops = {name: design.surface(OUTER) for name, design in designs.items()}
-flat, cap = tops["You et al."], true.surface(OUTER)
-height = scores.surface_distance(cap.vertices, flat).max()
+from_truth = against_truth.side_distances(
+    true, designs["You et al."]
+)  # from the true nodes to the fill
+height = from_truth["outer"].max()
 mean = seen["You et al."].distances["outer"].mean()
 print(f"cap {height:.2f} mm high, mean {mean:.2f} mm: ratio {mean / height:.2f}")
 for whose, row in (
