@@ -120,9 +120,9 @@ for turn, lean, shift in ((3, 0, 0), (0, 3, 0), (0, 0, 1)):
 # <details>
 # <summary>Answer</summary>
 #
-# The median residual rises from 0.17 mm to 1.26 mm for the shift, to 1.13 mm for the turn and to 0.43 mm for the lean.
-# A plane that is off by 1 mm puts the image off by 2 mm: a mirror doubles its errors. The residual is measured to the
-# surface, so it sees all 2 mm only where the skull faces left or right; the median is 1.26 mm. Turning a
+# The shift, then the turn, and least the lean: their median residuals are printed above. A plane that is off by 1 mm puts
+# the image off by 2 mm: a mirror doubles its errors. The residual is measured to the surface, so it shows all 2 mm only
+# where the skull faces left or right; the median is less. Turning a
 # ball costs nothing; seen from above the head is an oval, from the front its vault is rounder, so a turn costs more than a
 # lean. At the hole itself nothing can tell you: the map is white there, and at the
 # hole's partner on the other side.
@@ -158,9 +158,8 @@ for name in ("our head", "lopsided"):
 # <details>
 # <summary>Answer</summary>
 #
-# The phantom is nearly symmetric: its mirror image is nearly right already, and the fit gains little (Dice 0.950 to
-# 0.961). On the lopsided head the image stands beside the bone, and the rim knows by how much (0.870 to 0.952). Real
-# heads are of the second kind.
+# The phantom is nearly symmetric: its mirror image is nearly right already, and the fit gains little. On the
+# lopsided head the image lies beside the bone, and the rim says by how much. Real heads are of the second kind.
 #
 # The residual is small as the plane has moved over, into the middle of the wider head. What is left shows only where the
 # shape differs, not the width. A small residual is necessary for a good mirror, not sufficient.

@@ -162,8 +162,8 @@ EXERCISES: dict[str, Exercise] = {
         ),
         hints=(
             "Start with cubic(...), as in the lesson.",
-            "inflate(start, end_slopes, pressure=k) wants the slopes per snaxel.",
-            "k = tangent_pressure(length, theta0, theta1, n)",
+            "deformable_model.inflate(start, end_slopes, pressure=k) wants the slopes per snaxel.",
+            "k = deformable_model.tangent_pressure(length, theta0, theta1, n)",
         ),
         praise="a balloon at rest, though the tangents were noisy and the start curve was poor.",
     ),

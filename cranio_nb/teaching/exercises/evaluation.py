@@ -67,7 +67,7 @@ EXERCISES: dict[str, Exercise] = {
             ),
         ),
         hints=(
-            "cKDTree(b).query(a)[0] are the distances from a to b.",
+            "spatial.cKDTree(b).query(a)[0] are the distances from a to b.",
             "Take both ways and join them.",
             "np.percentile(np.concatenate([...]), 95)",
         ),

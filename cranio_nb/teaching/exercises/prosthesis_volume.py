@@ -117,7 +117,7 @@ EXERCISES: dict[str, Exercise] = {
             (lambda b, m: _lost(b, 1), "Small islands are left: drop regions under min_pixels."),
             (
                 lambda b, m: _lost(b, m, _SIDES),
-                "Pixels that touch at a corner belong together: ndimage.label(..., np.ones((3, 3))).",
+                "Pixels that touch at a corner belong together: measure.label counts them so.",
             ),
             (lambda b, m: _lost(b, m + 1), "A region of just min_pixels stays: >=, not >."),
             (
@@ -134,7 +134,7 @@ EXERCISES: dict[str, Exercise] = {
             ),
         ),
         hints=(
-            "convex_hull_image(bone) & ~bone, then label with np.ones((3, 3)).",
+            "morphology.convex_hull_image(bone) & ~bone, then measure.label.",
             "Count each label; 0 is background.",
             "keep = sizes >= min_pixels; keep[sizes.argmax()] = False; keep[labels]",
         ),
