@@ -17,7 +17,7 @@ from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
 import cranio_nb
-from cranio_nb.cli.doctor import examine
+from cranio_nb.cli.examination import examine
 from cranio_nb.cli.main import main
 
 ROOT = Path(__file__).parent.parent
@@ -200,6 +200,15 @@ class TestCheckScript:
         (command,) = (line for line in code_lines(README) if "-m venv" in line and "pytest" in line)
         assert asked.stdout == command
         assert 'bash -c "$command"' in text.splitlines()
+
+    def test_the_numerics_for_a_second_kernel_are_there(self):
+        (taking,) = re.findall(r"^numerics=\(.*?\)$", self.script.read_text(), re.M | re.S)
+        listing = f'{taking}; printf "%s\\n" "${{numerics[@]}}"'
+        names = subprocess.run(["bash", "-c", listing], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        for path, _, test in (name.partition("::") for name in names.split()):
+            place = ROOT / path
+            files = [place] if place.is_file() else sorted(place.rglob("test_*.py"))
+            assert files and any(f"def {test}" in file.read_text() for file in files)
 
     def test_is_a_program_that_stops_at_the_first_failure(self):
         assert self.script.stat().st_mode & 0o111

@@ -12,18 +12,40 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..drawing import figures
-from ..drawing.canvas import BLACK, BLUE, BONE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, rgb_of
+from ..drawing.coarse_skull import skull_surface
 from ..drawing.described import described
+from ..drawing.palette import BLACK, BLUE, BONE, GREEN, ORANGE, PATCH, PURPLE, SKULL, VERMILLION, rgb_shares
 from ..drawing.shading import Solid, render
 from ..mesh import Mesh
 
 if TYPE_CHECKING:
     from ..drawing.figures import Axes, Figure
 
+__all__ = [
+    "BLACK",
+    "BLUE",
+    "BONE",
+    "GREEN",
+    "LINES",
+    "MASKS",
+    "SKULL",
+    "axes",
+    "picture",
+    "plot_lines",
+    "show_curve",
+    "show_errors",
+    "show_hu",
+    "show_mask",
+    "show_meshes",
+    "show_points",
+    "skull_surface",
+    "zoom",
+]
+
 LINES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"), (BLACK, "-"))
 """Colour and style of the first, second, ... curve of a picture: told apart without colour as well."""
 
-MASKS = {"bone": BONE, "patch": SKY, "missing": VERMILLION, "extra": BLUE, "removed": ORANGE}
+MASKS = {"bone": BONE, "patch": PATCH, "missing": VERMILLION, "extra": BLUE, "removed": ORANGE}
 """Colours of `show_mask` by what a mask means; "#RRGGBB" does as well."""
 
 picture = described
@@ -90,7 +112,7 @@ def show_mask(ax: Axes, mask: NDArray[np.bool_], *, px: float, colour: str = "bo
     title : str
     """
     rgba = np.zeros((*mask.shape, 4))
-    rgba[mask] = [*_unit_rgb(MASKS.get(colour, colour)), 1.0]
+    rgba[mask] = [*rgb_shares(MASKS.get(colour, colour)), 1.0]
     ax.imshow(rgba, extent=_extent(mask.shape, px), interpolation="nearest")
     _label(ax, title)
 
@@ -216,15 +238,10 @@ def show_meshes(
     shaded : bool
         Whether light falls on them; False for colours that mean numbers.
     """
-    solids = [Solid(mesh, np.array(_unit_rgb(colour)) if isinstance(colour, str) else colour) for mesh, colour in parts]
-    ax.imshow(render(solids, towards, px=px, shaded=shaded).rgb)
+    solids = [Solid(mesh, rgb_shares(colour) if isinstance(colour, str) else colour) for mesh, colour in parts]
+    ax.imshow(render(solids, towards, px_mm=px, shaded=shaded).rgb)
     ax.set_title(title, fontsize=9)
     ax.set_axis_off()
-
-
-def _unit_rgb(colour: str) -> tuple[float, ...]:
-    """Red, green and blue of "#RRGGBB", 0 to 1."""
-    return tuple(value / 255 for value in rgb_of(colour))
 
 
 def _extent(shape: tuple[int, ...], px: float) -> tuple[float, float, float, float]:

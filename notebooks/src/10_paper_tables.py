@@ -301,7 +301,7 @@ for one in made.record["slices"]:
 # ## Figure 8: the skull before and after
 
 # %% tags=["nbval-check-output"]
-skull = (pictures.skull_surface(bone), pictures.BONE)
+skull = (pictures.skull_surface(bone), pictures.SKULL)
 towards = openings[0].direction
 fig, panels = pictures.axes(4, height=2.8, width=10.0)
 pictures.show_meshes(panels[0], [skull], towards, title="(a) defective")

@@ -13,7 +13,7 @@ from PIL import Image
 CELLS = (
     """
 import cranio_nb as cn
-from cranio_nb.drawing import scene3d, shading
+from cranio_nb.drawing import scene3d, coarse_skull
 from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import widgets
 from cranio_nb.prosthesis import OUTER
@@ -31,7 +31,7 @@ ends, _ = feature_extraction.find_gap_ends(seen, one.sheet.voxels[plane], skip_p
 widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels[plane])
 """,
     """
-skull = shading.skull_surface(bone)
+skull = coarse_skull.skull_surface(bone)
 scene3d.show_meshes(skull, colours=["#EDE7D8"], alt="A skull with a hole.", towards=one.direction)
 """,
 )

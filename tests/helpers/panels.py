@@ -5,7 +5,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from cranio_nb.drawing.canvas import rgb_of
+from cranio_nb.drawing.palette import rgb_of
 
 INSIDE = (200.0, 110.0)
 """(row, col) px on the inner side of the gap of the fixture `arch`."""

@@ -10,7 +10,7 @@ from scipy import ndimage
 from cranio_nb.cli.main import main
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.methods import thin_plate
-from cranio_nb.output.files import write_nifti
+from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.prior import alignment, shape_prior, vault_radii
 from cranio_nb.prior import study as prior_study
 from cranio_nb.prior.file import VERSION, load, save

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cranio_nb.drawing.canvas import rgb_of
+from cranio_nb.drawing.palette import rgb_of
 from cranio_nb.mesh import Mesh
 from cranio_nb.teaching import pictures
 

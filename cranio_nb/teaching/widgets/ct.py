@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...drawing.canvas import BLACK, GREY, VERMILLION, Canvas, Window, windowed
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BLACK, GREY, VERMILLION
+from ...drawing.pixels import Window, windowed
 from ...volume import Volume
 from .controls import Slider, View
 from .panel import Panel

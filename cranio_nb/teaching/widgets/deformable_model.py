@@ -12,24 +12,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...curves import ChordFrame, GapEnds, Points, arc_length, cubic, spiral
-from ...drawing.canvas import (
-    BLACK,
-    BLUE,
-    BONE,
-    GREEN,
-    GREY,
-    ORANGE,
-    RGB,
-    SKY,
-    VERMILLION,
-    Canvas,
-    Window,
-    plain,
-    round_length,
-    tinted,
-    windowed,
-)
+from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
+from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
+from ...drawing.pixels import RGB, Window, plain, tinted, windowed
 from ...stages import deformable_model as stage
 from .controls import Choice, Slider, View
 from .panel import Panel

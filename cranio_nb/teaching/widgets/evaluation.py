@@ -10,8 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...drawing.canvas import SKY, VERMILLION, Canvas
+from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
+from ...drawing.palette import SKY, VERMILLION
 from ...drawing.shading import Solid, render
 from ...errors import InputRefused
 from ...evaluation import scores
@@ -92,7 +93,7 @@ def map_distances(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> Dista
     towards = own.area_vectors.sum(axis=0)
     px = pixel_to_fit(own, towards, VIEW - 60)
     values = np.repeat(off[:, None], 3, axis=1)  # mm in place of colours
-    drawn = render([Solid(own, values)], towards, px=px, shaded=False)
+    drawn = render([Solid(own, values)], towards, px_mm=px, shaded=False)
     return DistanceMap(off, np.where(np.isfinite(drawn.depth), drawn.rgb[..., 0], np.nan), px)
 
 

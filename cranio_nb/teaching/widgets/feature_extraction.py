@@ -14,22 +14,9 @@ from scipy import ndimage
 from scipy.spatial import HalfspaceIntersection
 
 from ...curves import GapEnds, Points, SliceFeatures
-from ...drawing.canvas import (
-    BLACK,
-    BLUE,
-    BONE,
-    GREEN,
-    GREY,
-    ORANGE,
-    RGB,
-    SKY,
-    VERMILLION,
-    Canvas,
-    Window,
-    plain,
-    rgb_of,
-    tinted,
-)
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, rgb_of
+from ...drawing.pixels import RGB, Window, plain, tinted
 from ...stages import feature_extraction as stage
 from ...volume import Volume
 from .controls import Slider, View

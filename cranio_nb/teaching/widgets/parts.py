@@ -8,9 +8,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...drawing.canvas import GREY, RGB, SKY, Canvas, Window, round_length
+from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
 from ...drawing.figures import colour_scale
+from ...drawing.palette import GREY, SKY
+from ...drawing.pixels import RGB, Window
 from ...drawing.shading import view_axes
 from ...mesh import Mesh
 from ...volume import Volume

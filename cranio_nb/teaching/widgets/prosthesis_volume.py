@@ -11,8 +11,10 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...drawing.canvas import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, tinted
+from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
+from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
+from ...drawing.pixels import Window, plain, tinted
 from ...methods.design import design
 from ...methods.slicewise import SliceResult
 from ...opening import Opening

@@ -11,7 +11,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...drawing.canvas import BLACK, BLUE, BONE, ORANGE, SKY, VERMILLION, Canvas, Window, plain, rgb_of, tinted
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY, VERMILLION, rgb_shares
+from ...drawing.pixels import Window, plain, tinted
 from ...drawing.shading import Solid, render, view_axes
 from ...evaluation import scores
 from ...methods.you import mesh_to_voxels
@@ -93,8 +95,8 @@ def _from_outside(made: you.Filling, towards: NDArray[np.float64]) -> Canvas:
     meshes = (made.skull, BONE), (made.outer.mesh, SKY)
     flat = np.concatenate([mesh.vertices for mesh, _ in meshes]) @ right_down
     low, px = flat.min(axis=0) - _FREE, float(np.ptp(flat, axis=0).max() / (_SIDE - 30))
-    solids = [Solid(mesh, np.array(rgb_of(colour)) / 255) for mesh, colour in meshes]
-    rgb = (255 * render(solids, towards, px=px).rgb).astype(np.uint8)
+    solids = [Solid(mesh, rgb_shares(colour)) for mesh, colour in meshes]
+    rgb = (255 * render(solids, towards, px_mm=px).rgb).astype(np.uint8)
     corner = (_SIDE - np.array(rgb.shape[1::-1])) // 2
     canvas = Canvas(_SIDE, _SIDE)
     canvas.place(rgb, *corner)

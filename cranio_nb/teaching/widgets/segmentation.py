@@ -9,20 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ...drawing.canvas import (
-    BONE,
-    GREEN,
-    ORANGE,
-    PURPLE,
-    RGB,
-    SKY,
-    VERMILLION,
-    YELLOW,
-    Canvas,
-    Window,
-    tinted,
-    windowed,
-)
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BONE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, YELLOW
+from ...drawing.pixels import RGB, Window, tinted, windowed
 from ...stages import segmentation as stage
 from ...volume import Volume
 from .controls import Slider, Switch, View

@@ -10,8 +10,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...drawing.canvas import BLUE, GREEN, ORANGE, RGB, SKY, VERMILLION, Canvas, rgb_of
+from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
+from ...drawing.palette import BLUE, GREEN, ORANGE, SKY, VERMILLION, rgb_shares
+from ...drawing.pixels import RGB
 from ...drawing.shading import Solid, render
 from ...mesh import Mesh
 from ...stages import surface_reconstruction as stage
@@ -83,5 +85,5 @@ def _draw_deviation(canvas: Canvas, moved: NDArray[np.float64], wall: float, cor
 def _shaded(mesh: Mesh, towards: ArrayLike) -> tuple[RGB, float]:
     """A view of the surface, and the size of its pixels in mm."""
     px = pixel_to_fit(mesh, towards, VIEW - 60)
-    solid = Solid(mesh, np.array(rgb_of(ORANGE)) / 255)
-    return (255 * render([solid], towards, px=px).rgb).astype(np.uint8), px
+    solid = Solid(mesh, rgb_shares(ORANGE))
+    return (255 * render([solid], towards, px_mm=px).rgb).astype(np.uint8), px

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...drawing.canvas import BLACK, BLUE, GREY, Canvas
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BLACK, BLUE, GREY
 from ...evaluation.against_truth import TruthCheck, check_truth
 from ...methods.design import design
 from ...prosthesis import OUTER

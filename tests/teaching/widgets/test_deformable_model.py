@@ -5,7 +5,8 @@ import pytest
 from panels import INSIDE, count, pixels_of
 
 from cranio_nb.curves import ChordFrame, cubic
-from cranio_nb.drawing.canvas import BLUE, Window
+from cranio_nb.drawing.palette import BLUE
+from cranio_nb.drawing.pixels import Window
 from cranio_nb.stages import deformable_model
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets import deformable_model as panel_module

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from panels import count
 
-from cranio_nb.drawing.canvas import GREEN
+from cranio_nb.drawing.palette import GREEN
 from cranio_nb.stages import segmentation
 from cranio_nb.teaching import widgets
 from cranio_nb.volume import Volume

@@ -11,8 +11,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ....drawing.canvas import BLACK, BLUE, BONE, VERMILLION, Canvas
+from ....drawing.canvas import Canvas
 from ....drawing.canvas_axes import Chart
+from ....drawing.palette import BLACK, BLUE, BONE, VERMILLION
 from ....errors import InputRefused
 from ....methods import thin_plate
 from ....opening import Opening

@@ -10,8 +10,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from ....drawing.canvas import BLACK, BLUE, BONE, ORANGE, SKY, Canvas
+from ....drawing.canvas import Canvas
 from ....drawing.canvas_axes import Chart
+from ....drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY
 from ....methods.dnurbs import method as dnurbs
 from ....methods.dnurbs import sheet_motion
 from ....methods.dnurbs.sheet import Sheet
