@@ -23,13 +23,14 @@ from cranio_nb.errors import CranioError
 from cranio_nb.evaluation import scores
 from cranio_nb.evaluation.against_truth import against, table3, true_prosthesis
 from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES
+from cranio_nb.geometry import voxel_pieces
 from cranio_nb.methods.design import design
 from cranio_nb.opening import Opening
 from cranio_nb.pipeline.run import design_inside
 from cranio_nb.pipeline.trial import contenders
 from cranio_nb.prosthesis import DistanceStats, Prosthesis
 from cranio_nb.readers import read_ct
-from cranio_nb.stages import prosthesis_volume, surface_reconstruction
+from cranio_nb.stages import surface_reconstruction
 from cranio_nb.stages.segmentation import BONE_HU, segment
 from cranio_nb.vault import opening_search
 from cranio_nb.volume import Volume
@@ -100,7 +101,7 @@ def mirror(case: Any, bone: Volume) -> Volume:
     opening = opening_search.find_openings(bone)[0].sheet.voxels
     near = ndimage.binary_dilation(opening, np.ones((3, 13, 13)))
     return bone.with_voxels(
-        prosthesis_volume.main_piece(ndimage.binary_opening(flipped & ~bone.voxels & near), opening)
+        voxel_pieces.keep_main_piece(ndimage.binary_opening(flipped & ~bone.voxels & near), opening)
     )
 
 
@@ -180,7 +181,7 @@ def dryskull(folder: Path) -> None:
 
 def mean_thickness(implant: Volume) -> float:
     """Twice the volume over the surface: the mean thickness of a plate, mm."""
-    mesh = surface_reconstruction.extract(implant)
+    mesh = surface_reconstruction.extract_surface(implant)
     return 2 * mesh.volume / float(mesh.areas.sum())
 
 

@@ -74,6 +74,26 @@ class ChordFrame:
         return float(theta0), float(theta1 % (2 * np.pi))
 
 
+@dataclass(frozen=True, eq=False)
+class Balloon:
+    """Relaxed curves of the deformable model, and how they got there.
+
+    Parameters
+    ----------
+    curve, start : ndarray, shape (..., n, 2)
+        Final and initial snaxels, chord (along, out) px.
+    n_iter : ndarray of int, shape (...)
+        Steps until the curve stopped moving.
+    converged : ndarray of bool, shape (...)
+        Whether it stopped moving within the allowed steps.
+    """
+
+    curve: Points
+    start: Points
+    n_iter: NDArray[np.intp]
+    converged: NDArray[np.bool_]
+
+
 def arc_length(points: Points) -> NDArray[np.float64]:
     """Length along a polyline up to each of its points, shape (n,), starting at 0."""
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
+from ..geometry import face_sides
 from ..mesh import Mesh
 from ..opening import Opening
 from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
@@ -64,8 +65,8 @@ def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Opening)
 
 def true_prosthesis(truth: Volume, bone: Volume, largest: Opening) -> Prosthesis:
     """The missing bone as a prosthesis: its mesh with sides. Parameters as in `check_truth`."""
-    mesh = surface_reconstruction.extract(truth)
-    return Prosthesis(mesh, surface_reconstruction.face_sides(mesh, bone, largest.head_centre), truth, "truth")
+    mesh = surface_reconstruction.extract_surface(truth)
+    return Prosthesis(mesh, face_sides.label_faces(mesh, bone, largest.head_centre), truth, "truth")
 
 
 def against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCheck:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputRefused, NoOpening
+from ..geometry import face_sides
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import surface_reconstruction
@@ -50,7 +51,7 @@ def design(
         Called with (stage, fraction done).
     **options
         Options of the method that differ from the preset. Every method has `smooth`: a surface without stairs (see
-        `surface_reconstruction.extract`).
+        `surface_reconstruction.extract_surface`).
 
     Returns
     -------
@@ -139,8 +140,8 @@ def assemble(
         raise NoOpening("NothingBridged", message, "Try another method or preset.")
     report("surface", _SURFACE)
     solid = bone.with_voxels(patch)
-    mesh = surface_reconstruction.extract(solid, smooth=parameters["smooth"])
-    sides = surface_reconstruction.face_sides(mesh, bone, openings[0].head_centre)
+    mesh = surface_reconstruction.extract_surface(solid, smooth=parameters["smooth"])
+    sides = face_sides.label_faces(mesh, bone, openings[0].head_centre)
     record = {"version": version("cranio-nb"), "seconds": time.perf_counter() - began, **join_records(records)}
     return Prosthesis(mesh, sides, solid, method, parameters, record, tuple(working))
 

@@ -27,10 +27,11 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
+from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..stages import prosthesis_volume
-from ..vault import radius_map
-from ..vault.radius_map import RadialChart
+from ..vault import radius_measurement, radius_voxels
+from ..vault.ray_grid import RadiusMap
 from ..volume import Volume
 from .piece import Piece
 
@@ -46,7 +47,7 @@ class HullDesign:
     Parameters
     ----------
     opening : Opening
-    vault : RadialChart
+    vault : RadiusMap
     outer, inner : ndarray, shape (M, M)
         Radii of the two hulls across the hole in mm, nan elsewhere; all nan where slices were used.
     slices : tuple of dict
@@ -54,7 +55,7 @@ class HullDesign:
     """
 
     opening: Opening
-    vault: RadialChart
+    vault: RadiusMap
     outer: NDArray[np.float64]
     inner: NDArray[np.float64]
     slices: tuple[dict[str, Any], ...] = ()
@@ -89,17 +90,17 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) ->
 
 def _in_space(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening between the hulls of the vault's two surfaces."""
-    vault = radius_map.look(bone, opening)
+    vault = radius_measurement.measure_around(bone, opening)
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
-    outer, inner = radius_map.thickened(vault, outer, inner)
-    piece = radius_map.voxelise(vault, outer, inner, bone)
-    return HullDesign(opening, vault, outer, inner), prosthesis_volume.solid_piece(piece, opening.sheet, bone)
+    outer, inner = radius_voxels.thickened(vault, outer=outer, inner=inner)
+    piece = radius_voxels.voxels_between(vault, bone, outer=outer, inner=inner)
+    return HullDesign(opening, vault, outer, inner), voxel_pieces.keep_solid_piece(piece, opening.sheet, bone)
 
 
-def _hull_radius(vault: RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+def _hull_radius(vault: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
     """Radius where rays across the hole leave the convex hull of a surface around it, shape (M, M), mm; else nan."""
     known = np.isfinite(radius) & ~vault.hole
-    directions = vault.directions
+    directions = vault.grid.directions
     points = np.concatenate([directions[known] * radius[known][:, None], np.zeros((1, 3))])
     facets = ConvexHull(points).equations  # n x + b <= 0 inside
     rays = directions[vault.hole]
@@ -119,7 +120,7 @@ def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[n
 
 def _by_slices(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening, slice by slice along the planes of the scan."""
-    vault = radius_map.look(bone, opening)
+    vault = radius_measurement.measure_around(bone, opening)
     first, end = opening.planes
     px = float(bone.spacing[1:].mean())
     near = ndimage.binary_dilation(opening.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
@@ -131,15 +132,15 @@ def _by_slices(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.b
         piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
         entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
     nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(opening, vault, nothing, nothing, tuple(entries)), prosthesis_volume.solid_piece(
+    return HullDesign(opening, vault, nothing, nothing, tuple(entries)), voxel_pieces.keep_solid_piece(
         piece, opening.sheet, bone
     )
 
 
-def _cone(vault: RadialChart, bone: Volume) -> NDArray[np.bool_]:
+def _cone(vault: RadiusMap, bone: Volume) -> NDArray[np.bool_]:
     """Voxels without bone in the directions of the hole, at any depth; beside it only as deep as its rim."""
     far, deep = (np.where(vault.hole, np.nanmedian(vault.outer) + d, np.nan) for d in (_ABOVE, -_BELOW))
-    return radius_map.voxelise(vault, far, deep, bone)
+    return radius_voxels.voxels_between(vault, bone, outer=far, inner=deep)
 
 
 def _slice(
@@ -159,7 +160,7 @@ def _slice(
     if not cone.any():
         return nothing, "outside the hole"
     if len(hits) == _RAYS:
-        return prosthesis_volume.partial_loss(bone, min_area=min_area, region=near) & cone, "closed ring"
+        return prosthesis_volume.fill_partial_loss(bone, min_area_px=min_area, region=near) & cone, "closed ring"
     hits = hits[~rim]
     if len(hits) < _RAYS / 2:  # their hull may not hold the inside
         return nothing, "no ring of bone in this slice"
@@ -169,12 +170,9 @@ def _slice(
     return nothing, "open ring"
 
 
-def _in_hole(vault: RadialChart, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _in_hole(vault: RadiusMap, points: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which world points (n, 3) are seen in the directions of the hole, shape (n,)."""
-    at = np.rint(vault.locate(points - vault.eye)).astype(np.intp)
-    known = ((at >= 0) & (at < len(vault.hole))).all(axis=0)
-    v, u = np.where(known, at, 0)
-    return vault.hole[v, u] & known
+    return vault.grid.at(vault.hole, points - vault.grid.centre, outside=False)
 
 
 def _in_hull(pixels: NDArray, points: NDArray, beyond: float) -> NDArray[np.bool_]:

@@ -3,10 +3,10 @@
 Bone mask in, pieces out. The 2011 paper (doi 10.5220/0003356601370142) measures its prostheses against a
 reflection: the skull is mirrored at its symmetry plane, bone is taken off, the piece in the hole is kept.
 
-Idea. `symmetry.find` gives the plane x -> x - 2 (n (x - p)) n. The mirrored skull is the same voxels under another
-affine, so nothing is resampled: both skulls are measured along the same rays from inside the head, between voxels, on
-the opening's chart, and the prosthesis lies between the mirrored radii, in the hole, off the bone. Where the mirror
-image has no bone either, because the defect crosses the plane or has a partner, there is nothing to copy.
+Idea. `find_symmetry_plane` gives the plane x -> x - 2 (n (x - p)) n. The mirrored skull is the same voxels under
+another affine, so nothing is resampled: both skulls are measured along the same rays from inside the head, between
+voxels, about the opening, and the prosthesis lies between the mirrored radii, in the hole, off the bone. Where the
+mirror image has no bone either, because the defect crosses the plane or has a partner, there is nothing to copy.
 
 Faithful: mirror, subtract, keep the piece in the hole. Ours: the plane is found and not clicked, the surface is smooth
 between voxels, the edge ends with the bone's own surface, the part that cannot be copied is refused or left out. Also
@@ -30,11 +30,10 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from ..errors import InputRefused
+from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..stages import prosthesis_volume
-from ..vault import radius_map, symmetry
-from ..vault.radius_map import RadialChart
-from ..vault.ray_grid import extended
+from ..vault import radius_measurement, radius_voxels, symmetry
+from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
 from .piece import Piece
@@ -56,7 +55,7 @@ class MirroredDesign:
     ----------
     opening : Opening
     plane : SymmetryPlane
-    own, mirrored : RadialChart
+    own, mirrored : RadiusMap
         The skull and its mirror image along the same rays; `mirrored.hole` is where the image lacks bone.
     outer, inner : ndarray, shape (M, M)
         Radii of the prosthesis in mm; nan where it has none.
@@ -64,8 +63,8 @@ class MirroredDesign:
 
     opening: Opening
     plane: SymmetryPlane
-    own: RadialChart
-    mirrored: RadialChart
+    own: RadiusMap
+    mirrored: RadiusMap
     outer: NDArray[np.float64]
     inner: NDArray[np.float64]
 
@@ -111,7 +110,7 @@ def pieces(
     InputRefused
         ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
     """
-    plane = symmetry.find(bone, openings[0].head_centre)
+    plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre)
     made = [_mirrored(bone, opening, plane, fit_rim) for opening in openings]
     if not partial:
         _check_whole(made)
@@ -127,8 +126,8 @@ def _solid(part: MirroredDesign, bone: Volume) -> NDArray[np.bool_]:
     """The voxels between the mirrored radii; none where nothing can be copied."""
     if not np.isfinite(part.outer).any():
         return np.zeros(bone.shape, bool)
-    between = radius_map.voxelise(part.own, part.outer, part.inner, bone)
-    return prosthesis_volume.solid_piece(between, part.opening.sheet, bone)
+    between = radius_voxels.voxels_between(part.own, bone, outer=part.outer, inner=part.inner)
+    return voxel_pieces.keep_solid_piece(between, part.opening.sheet, bone)
 
 
 def _check_whole(made: list[MirroredDesign]) -> None:
@@ -152,30 +151,30 @@ def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
 
 def _mirrored(bone: Volume, opening: Opening, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
     """Radii of the mirror image across one hole, nan where it has none to give."""
-    own = radius_map.look(bone, opening)
-    image = radius_map.along(own, plane.mirrored(bone))
+    own = radius_measurement.measure_around(bone, opening)
+    image = radius_measurement.measure_along(own, plane.mirrored(bone))
     known = np.isfinite(image.outer) & ~image.hole
-    outer, inner = (extended(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
+    outer, inner = (filled_from_nearest(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
     if fit_rim:
         finest = max(_SMOOTH, 2 * float(bone.spacing.max()))
         outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
         inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
-        outer, inner = radius_map.thickened(own, outer, inner)
+        outer, inner = radius_voxels.thickened(own, outer=outer, inner=inner)
     made = MirroredDesign(opening, plane, own, image, outer, inner)
     keep = own.hole
     if made.lost > _TOLERATED:
-        keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / own.mm)))
+        keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / own.step_mm)))
     return replace(made, outer=np.where(keep, outer, np.nan), inner=np.where(keep, inner, np.nan))
 
 
-def _difference(own: RadialChart, difference: NDArray[np.float64], smooth: float) -> NDArray[np.float64]:
+def _difference(own: RadiusMap, difference: NDArray[np.float64], smooth: float) -> NDArray[np.float64]:
     """What the mirror image lacks to the bone around the hole, continued smoothly across it, shape (M, M), mm.
 
     Waves shorter than `smooth` mm are taken for noise.
     """
-    skip = max(1, round(_COARSE / own.mm))
-    step = skip * own.mm
-    away = ndimage.distance_transform_edt(~own.hole)[::skip, ::skip] * own.mm
+    skip = max(1, round(_COARSE / own.step_mm))
+    step = skip * own.step_mm
+    away = ndimage.distance_transform_edt(~own.hole)[::skip, ::skip] * own.step_mm
     area = away <= _RING
     target = difference[::skip, ::skip]
     known = area & (away > 0) & np.isfinite(target)
@@ -188,7 +187,7 @@ def _difference(own: RadialChart, difference: NDArray[np.float64], smooth: float
     coarse = np.full(area.shape, np.nan)
     coarse[area] = solved
     v, u = np.indices(difference.shape) / skip
-    return ndimage.map_coordinates(extended(coarse), [v, u], order=1, mode="nearest")
+    return ndimage.map_coordinates(filled_from_nearest(coarse), [v, u], order=1, mode="nearest")
 
 
 def _laplacian(area: NDArray[np.bool_]) -> sparse.csr_array:

@@ -39,13 +39,12 @@ from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
 from ..errors import InputRefused
+from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prior import file as prior_file
 from ..prior.shape_prior import Prior, expect
-from ..stages import prosthesis_volume
-from ..vault import radius_map, symmetry
-from ..vault.radius_map import RadialChart
-from ..vault.ray_grid import extended
+from ..vault import radius_measurement, radius_voxels, symmetry
+from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
 from .piece import Piece
@@ -70,7 +69,7 @@ class Plate:
 
     Parameters
     ----------
-    chart : RadialChart
+    chart : RadiusMap
         The vault around the opening.
     outer, inner : ndarray, shape (M, M)
         Radii of the prosthesis, mm; nan outside the hole.
@@ -80,7 +79,7 @@ class Plate:
         Outer and inner radii that a prior predicts.
     """
 
-    chart: RadialChart
+    chart: RadiusMap
     outer: Array
     inner: Array
     mirrored: tuple[Array, Array] | None
@@ -234,7 +233,7 @@ def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_arra
 def _symmetry(bone: Volume, opening: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
     """The symmetry plane, if there is one, and what to record of it."""
     try:
-        plane = symmetry.find(bone, opening.head_centre)
+        plane = symmetry.find_symmetry_plane(bone, opening.head_centre)
     except InputRefused as refused:
         return None, {"unused": refused.message}
     if plane.residual > _LOPSIDED:
@@ -246,34 +245,34 @@ def _plate(
     bone: Volume, opening: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
     """Both plates of one opening."""
-    vault = radius_map.look(bone, opening)
+    vault = radius_measurement.measure_around(bone, opening)
     mirrored = None if plane is None else _other_side(bone, vault, plane)
     expected = None if learned is None else _expected(bone, vault, learned)
-    nodes = max(1, round(_NODES / vault.mm))
+    nodes = max(1, round(_NODES / vault.step_mm))
     hole = thinned(vault.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
-    rim = ndimage.distance_transform_edt(~vault.hole) * vault.mm <= _RIM
+    rim = ndimage.distance_transform_edt(~vault.hole) * vault.step_mm <= _RIM
     radii = []
     for i, radius in enumerate((vault.outer, vault.inner)):
         known = np.where(rim, np.nan, radius)
         like, likely = (None if maps is None else thinned(maps[i], nodes) for maps in (mirrored, expected))
-        plate = bend(thinned(known, nodes), hole, vault.mm * nodes, like=like, expected=likely, **lengths)
+        plate = bend(thinned(known, nodes), hole, vault.step_mm * nodes, like=like, expected=likely, **lengths)
         radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))
     return Plate(vault, radii[0], radii[1], mirrored, expected)
 
 
-def _other_side(bone: Volume, vault: RadialChart, plane: SymmetryPlane) -> tuple[Array, Array]:
+def _other_side(bone: Volume, vault: RadiusMap, plane: SymmetryPlane) -> tuple[Array, Array]:
     """Outer and inner radii of the mirrored skull along the chart's rays; nan where it lacks bone."""
-    other = radius_map.along(vault, plane.mirrored(bone))
+    other = radius_measurement.measure_along(vault, plane.mirrored(bone))
     return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
 
 
-def _expected(bone: Volume, vault: RadialChart, learned: Prior) -> tuple[Array, Array] | None:
+def _expected(bone: Volume, vault: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
     """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
     predicted = expect(learned, bone, vault)
     if not (np.isfinite(predicted.outer) & vault.hole).any():
         return None
     outer, inner = (
-        ndimage.gaussian_filter(extended(radius), _RAYS_APART / vault.mm)
+        ndimage.gaussian_filter(filled_from_nearest(radius), _RAYS_APART / vault.step_mm)
         for radius in (predicted.outer, predicted.inner)
     )
     return outer, inner
@@ -283,8 +282,9 @@ def _solid(plate: Plate, opening: Opening, bone: Volume) -> NDArray[np.bool_]:
     """The voxels between both plates; none where bone holds no plate."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
-    outer, inner = radius_map.thickened(plate.chart, plate.outer, plate.inner)
-    return prosthesis_volume.main_piece(radius_map.voxelise(plate.chart, outer, inner, bone), opening.sheet.voxels)
+    outer, inner = radius_voxels.thickened(plate.chart, outer=plate.outer, inner=plate.inner)
+    between = radius_voxels.voxels_between(plate.chart, bone, outer=outer, inner=inner)
+    return voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
 
 
 def thinned(values: Array, nodes: int) -> Array:
@@ -313,4 +313,6 @@ def thinned(values: Array, nodes: int) -> Array:
 def _refined(values: Array, nodes: int, shape: tuple[int, ...]) -> Array:
     """The map that `thinned` would have made these values from: cubic between the nodes."""
     start = (shape[0] // 2) % nodes
-    return ndimage.map_coordinates(extended(values), (np.indices(shape) - start) / nodes, order=3, mode="nearest")
+    return ndimage.map_coordinates(
+        filled_from_nearest(values), (np.indices(shape) - start) / nodes, order=3, mode="nearest"
+    )

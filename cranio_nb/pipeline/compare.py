@@ -184,7 +184,7 @@ def compare(
     Examples
     --------
     >>> import cranio_nb as cn
-    >>> from cranio_nb.output.files import write_nifti
+    >>> from cranio_nb.output.nifti_files import write_nifti
     >>> from cranio_nb.pipeline.trial import attempt, contenders
     >>> from data_synth import phantom_case
     >>> case = phantom_case("tiny", "burr_hole", 0)
@@ -193,7 +193,7 @@ def compare(
     >>> prepared = cn.prepare("skull.nii.gz", truth="truth.nii.gz")
     >>> found = cn.compare(prepared, contenders(["hull", "hull:paper"]), attempt=attempt)
     >>> {name: round(row["dice"], 1) for name, row in zip(found.made, found.rows)}
-    {'hull': 0.9, 'hull:paper': 0.8}
+    {'hull': 1.0, 'hull:paper': 0.8}
     """
     report = progress or (lambda step, done: None)
     truth = None if case.truth is None else Reference.of(case.truth, case.bone, case.openings[0])

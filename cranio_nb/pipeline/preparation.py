@@ -87,7 +87,7 @@ def prepare(
     Examples
     --------
     >>> import cranio_nb as cn
-    >>> from cranio_nb.output.files import write_nifti
+    >>> from cranio_nb.output.nifti_files import write_nifti
     >>> from data_synth import phantom_case
     >>> case = phantom_case("tiny", "burr_hole", 0)
     >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")

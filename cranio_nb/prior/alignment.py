@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, cKDTree
 
-from ..vault import opening_search
+from ..vault.orientation import head_axes, head_centre
 from ..volume import Volume
 
 Array = NDArray[np.float64]
@@ -112,9 +112,7 @@ def see(bone: Volume) -> Cloud:
     InputRefused
         ``NoVault`` when the mask holds no skull vault.
     """
-    eye = opening_search.head_centre(bone)
-    up, back, left = (bone.affine[:3, :3] / bone.spacing).T
-    axes, directions = np.stack([left, back, up], axis=1), sphere(4)
+    eye, axes, directions = head_centre(bone), head_axes(bone).T, sphere(4)
     first, last = outline(bone, HeadFrame(axes, eye), directions)
     inside, outside = (directions * radius[:, None] for radius in (first, last))
     return Cloud(inside[np.isfinite(first)], outside[np.isfinite(last)], eye, axes)
@@ -134,10 +132,8 @@ def outline(bone: Volume, frame: HeadFrame, directions: Array) -> tuple[Array, A
     """
     stretch = frame.stretch(directions)
     lengths = np.arange(_NEAR, _FAR, _SAMPLE)
-    steps = directions @ frame.matrix.T / stretch[:, None] @ np.linalg.inv(bone.affine[:3, :3]).T
-    index = np.rint(bone.to_voxel(frame.origin) + steps[:, None, :] * lengths[:, None]).astype(np.intp)
-    inside = ((index >= 0) & (index < bone.shape)).all(axis=-1)
-    hit = bone.voxels[tuple(np.moveaxis(np.where(inside[..., None], index, 0), -1, 0))] & inside
+    steps = bone.steps(directions @ frame.matrix.T / stretch[:, None])
+    hit = bone.at_index(bone.to_voxel(frame.origin) + steps[:, None, :] * lengths[:, None], outside=False)
     first, last = lengths[hit.argmax(axis=1)], lengths[len(lengths) - 1 - hit[:, ::-1].argmax(axis=1)]
     polar = np.degrees(np.arccos(np.clip(directions[:, 2], -1, 1)))
     met = hit.any(axis=1)

@@ -35,7 +35,7 @@ from scipy import linalg
 from scipy.interpolate import CloughTocher2DInterpolator
 
 from ..errors import InputRefused
-from ..vault.radius_map import RadialChart
+from ..vault.ray_grid import RadiusMap
 from ..volume import Volume
 from . import alignment
 from .alignment import Cloud, HeadFrame
@@ -159,7 +159,7 @@ def check_intact(bone: Volume) -> None:
         raise InputRefused("NotIntact", message, "A prior is learned from scans of whole, closed skulls.")
 
 
-def expect(prior: Prior, bone: Volume, chart: RadialChart) -> Expected:
+def expect(prior: Prior, bone: Volume, chart: RadiusMap) -> Expected:
     """The most likely vault around an opening, given the bone that is there.
 
     Parameters
@@ -167,7 +167,7 @@ def expect(prior: Prior, bone: Volume, chart: RadialChart) -> Expected:
     prior : Prior
     bone : Volume
         Bool mask of the skull with the hole; all of it informs, not only what the chart shows.
-    chart : RadialChart
+    chart : RadiusMap
         Of the opening.
 
     Raises
@@ -185,8 +185,8 @@ def expect(prior: Prior, bone: Volume, chart: RadialChart) -> Expected:
     unknown = near(hole, _RIM) | near(is_open(radii) & ~hole, _FREE_RIM)
     known = np.where(unknown, np.nan, without_outliers(radii, middle))
     directions = vault_rays() @ frame.matrix.T
-    reach = min(len(chart.outer) / 2 * chart.step + 0.2, np.pi)
-    wanted: Mask = directions @ chart.axes[2] > np.cos(reach) * np.linalg.norm(directions, axis=1)
+    reach = min(chart.grid.n / 2 * chart.grid.step_rad + 0.2, np.pi)
+    wanted: Mask = directions @ chart.grid.axes[2] > np.cos(reach) * np.linalg.norm(directions, axis=1)
     points = frame.to_world(vault_rays()[wanted] * condition(prior, known, wanted)[..., None])
     outer, inner = (_onto_chart(chart, frame, side) for side in points)
     return Expected(outer, inner, frame)
@@ -300,24 +300,22 @@ def _completed(radii: Array) -> Array:
     return np.where(np.isfinite(sound), sound, usual)
 
 
-def _rays_through(chart: RadialChart, frame: HeadFrame, middle: Array) -> Mask:
+def _rays_through(chart: RadiusMap, frame: HeadFrame, middle: Array) -> Mask:
     """Which rays pass through the chart's hole, on the outer or the inner side of the mean vault (2, m)."""
     through = np.zeros(len(vault_rays()), bool)
     for radius in middle:
-        away = frame.to_world(vault_rays() * radius[:, None]) - chart.eye
-        v, u = np.rint(chart.locate(away)).astype(np.intp)
-        inside = (v >= 0) & (v < len(chart.hole)) & (u >= 0) & (u < len(chart.hole))
-        through[inside] |= chart.hole[v[inside], u[inside]]
+        away = frame.to_world(vault_rays() * radius[:, None]) - chart.grid.centre
+        through |= chart.grid.at(chart.hole, away, outside=False)
     return through
 
 
-def _onto_chart(chart: RadialChart, frame: HeadFrame, points: Array) -> Array:
+def _onto_chart(chart: RadiusMap, frame: HeadFrame, points: Array) -> Array:
     """Radius of a surface given by points (k, 3), world, along the rays of a chart, shape (M, M), mm."""
-    away = points - chart.eye
+    away = points - chart.grid.centre
     grid = np.indices(chart.outer.shape).reshape(2, -1).T
-    values = CloughTocher2DInterpolator(chart.locate(away).T, np.linalg.norm(away, axis=1))(grid)
+    values = CloughTocher2DInterpolator(chart.grid.locate(away).T, np.linalg.norm(away, axis=1))(grid)
     radius = values.reshape(chart.outer.shape)
-    seen = (chart.eye + chart.directions * radius[..., None] - frame.origin) @ np.linalg.inv(frame.matrix).T
+    seen = (chart.grid.points(radius) - frame.origin) @ np.linalg.inv(frame.matrix).T
     with np.errstate(invalid="ignore"):
         below = seen[..., 2] < np.cos(np.radians(VAULT)) * np.linalg.norm(seen, axis=-1)
     return np.where(below, np.nan, radius)

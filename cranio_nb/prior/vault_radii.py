@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..vault import ray_casting
+from ..vault.ray_casting import surface_radii
 from ..volume import Volume
 from . import alignment
 from .alignment import HeadFrame
@@ -55,7 +55,7 @@ def measure(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
     rays = vault_rays()
     stretch = frame.stretch(rays)
     directions = rays @ frame.matrix.T / stretch[:, None]
-    inner, outer = ray_casting.cast(bone, frame.origin, directions, middle * stretch)
+    outer, inner = surface_radii(bone, frame.origin, directions, middle * stretch)
     return np.stack([outer, inner]) / stretch
 
 

@@ -1,79 +1,88 @@
-"""Stage 3, the deformable model: gap ends come in -> the boundary curve of the prosthesis across the gap goes out.
+"""Stage 3, deformable model: the ends of a gap come in -> the boundary curve of the prosthesis across it goes out.
 
-Frame: chord (along, out) px; all curves of all slices are relaxed together as one batch.
+Frame: chord (along, out); lengths in px. The curves of all slices are relaxed together, as one batch.
+Source: VISAPP 2011, sections 2 and 3, eqs. (1) to (3), after Cohen 1991.
 
-The balloon of the paper's eq. (1), after Cohen 1991: an open curve with tension and rigidity, clamped in position and
-slope at both ends, inflated by a pressure k along its normal. Written per snaxel index, with w1 = ds^2 and w2 = ds^4
-as in the paper's section 3, the step ds cancels, and the weights below are 1.
+Eq. (1) is the balloon: an open curve with tension w1 and rigidity w2, pushed by a pressure k along its normal n,
 
-What the pressure does: away from the ends the curve bends until tension balances pressure, c'' = -k per index squared,
-so it settles on an apex of k N^2 / 8 pixels whatever the gap's width. The paper's k therefore fits one width only;
-`tangent_pressure` and `spiral` curvature make k follow from the ends.
+    dc/dt - (w1 c')' + (w2 c'')'' = k n(c),
+
+and eq. (2) fixes its ends in position and slope; eq. (3) is the start curve, `curves.cubic`. The paper sets w1 = ds^2
+and w2 = ds^4. Written per snaxel index the step ds cancels, and both weights are 1.
+
+What the pressure does: away from the ends the curve bends until tension balances pressure, c'' = -k per index squared.
+Its apex then lies k N^2 / 8 px above the chord, however wide the gap is: the paper's k fits one width only.
+`tangent_pressure` and `curvature_pressure` make k follow from the ends instead.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import cho_solve_banded, cholesky_banded
 
-from ..curves import Points, normals
+from ..curves import Balloon, Points, normals
 
 PAPER_PRESSURE = 0.062
 """|k| of the paper, px per index squared, outward (section 3; the paper's own sign is negative)."""
 
 
-@dataclass(frozen=True, eq=False)
-class Balloon:
-    """Relaxed curves, with how they got there.
-
-    Parameters
-    ----------
-    curve, start : ndarray, shape (..., n, 2)
-        Final and initial snaxels, chord (along, out) px.
-    n_iter : ndarray of int, shape (...)
-        Steps until the curve stopped moving.
-    converged : ndarray of bool, shape (...)
-        Whether it stopped moving within the allowed steps.
-    """
-
-    curve: Points
-    start: Points
-    n_iter: NDArray[np.intp]
-    converged: NDArray[np.bool_]
-
-
 def tangent_pressure(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> NDArray[np.float64]:
-    """The pressure that agrees with the end slopes: k = L (tan theta0 - tan theta1) / N^2.
+    """The pressure that agrees with the slopes at the two ends.
 
     Parameters
     ----------
-    length : array_like
+    length : array_like, shape (...)
         Gap length L, px.
-    theta0, theta1 : array_like
-        End angles, radians.
+    theta0, theta1 : array_like, shape (...)
+        Angles of the end tangents above the chord, radians: theta0 acute, theta1 obtuse for an outward bulge.
     n : int
         Number of snaxels; N = n - 1.
 
+    Returns
+    -------
+    ndarray of float, shape (...)
+        k, px per index squared, outward positive.
+
     Notes
     -----
-    The parabola of curvature k per index squared has end slopes +- k N^2 / (2 L).
+    k = L (tan theta0 - tan theta1) / N^2: the parabola of curvature k per index squared has the end slopes
+    +- k N^2 / (2 L).
+
+    Examples
+    --------
+    The apex of that parabola, k N^2 / 8, is L tan(theta0) / 4:
+
+    >>> k = tangent_pressure(40.0, 0.1, np.pi - 0.1, n=21)
+    >>> bool(np.isclose(k * 20**2 / 8, 40 * np.tan(0.1) / 4))
+    True
     """
     return np.asarray(length) * (np.tan(theta0) - np.tan(theta1)) / (n - 1) ** 2
 
 
 def curvature_pressure(length: NDArray, curvature: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The pressure of each snaxel that holds a curve of given curvature: k = h^2 curvature, h the snaxel spacing.
+    """The pressure at each snaxel that holds a curve of given curvature.
 
     Parameters
     ----------
     length : ndarray, shape (...)
-        Length of the curve, px.
+        Length of the curve (not of the chord), px.
     curvature : ndarray, shape (..., n)
         1 / px, outward positive.
+
+    Returns
+    -------
+    ndarray of float, shape (..., n)
+        k = h^2 curvature, px per index squared, with h the distance between snaxels.
+
+    Examples
+    --------
+    21 snaxels 2 px apart on a circle of 50 px: k = 2^2 / 50.
+
+    >>> curvature_pressure(np.array(40.0), np.full(21, 1 / 50))[:2].round(9)
+    array([0.08, 0.08])
     """
     step = np.asarray(length)[..., None] / (curvature.shape[-1] - 1)
     return step**2 * curvature
@@ -96,46 +105,64 @@ def inflate(
     Parameters
     ----------
     start : ndarray, shape (..., n, 2)
-        Initial snaxels, chord px; the first and last stay where they are.
+        Initial snaxels, chord px. The first and the last stay where they are.
     end_slopes : ndarray, shape (..., 2, 2)
-        Derivative of the curve per snaxel index at its first and last snaxel, px.
+        Derivative of the curve at its first and last snaxel, px per index.
     pressure : array_like, shape () or (...) or (..., n)
-        k, px per index squared, positive = outward.
-    tension, rigidity : float
-        w1 and w2 in units of ds^2 and ds^4.
+        k, px per index squared, outward positive.
+    tension : float
+        w1 in units of ds^2, at least 0; the paper: 1.
+    rigidity : float
+        w2 in units of ds^4, at least 0; the paper: 1.
     dt : float
-        Time step. The paper gives none.
+        Time step in units of the model's own time. The paper gives none.
     tol : float
-        Stop when ||c(t + dt) - c(t)|| <= tol, the norm over all snaxels of a curve, px.
+        A curve stops when ||c(t + dt) - c(t)|| <= tol, px, the norm over all its snaxels; the paper: 1e-3.
     max_iter : int
-        Give up after so many steps; the result says so.
+        At most so many steps; `Balloon.converged` says whether they were enough.
     iter_callback : callable, optional
-        Called after each step with (step, curves, change).
+        Called after each step with (step, curves (..., n, 2), change (...) in px).
 
     Returns
     -------
     Balloon
+        Final and initial curves, the steps of each and whether it converged.
 
     Notes
     -----
-    Semi-implicit finite differences (Cohen 1991): (I + dt A) c(t + dt) = c(t) + dt (k n(c(t)) + b), with A the sum of
-    second and fourth differences, clamped ends by ghost nodes c(-1) = c(1) - 2 c'(0), and b what the fixed ends add.
-    A is symmetric, pentadiagonal and the same for every curve: factored once.
+    Eq. (1) by semi-implicit finite differences (Cohen 1991):
+
+        (I + dt A) c(t + dt) = c(t) + dt (k n(c(t)) + b),
+
+    with A the sum of second and fourth differences and b what the fixed ends of eq. (2) add, by ghost nodes
+    c(-1) = c(1) - 2 c'(0). A is symmetric, has five diagonals, and is the same for every curve: factored once.
+
+    Examples
+    --------
+    Tension alone against the pressure gives a parabola, whose apex is k N^2 / 8 = 0.5 px:
+
+    >>> start = np.stack([np.linspace(0, 100, 21), np.zeros(21)], axis=1)
+    >>> made = inflate(start, np.zeros((2, 2)), pressure=0.01, rigidity=0.0, tol=1e-9)
+    >>> bool(made.converged), float(made.curve[10, 1].round(3))
+    (True, 0.5)
     """
-    shape = start.shape[:-2]
-    curve = start.reshape(-1, *start.shape[-2:]).astype(float)
+    # one row for each curve, whatever the shape of the batch
+    shape, n = start.shape[:-2], start.shape[-2]
+    curve = start.reshape(-1, n, 2).astype(float)
     slopes = np.broadcast_to(end_slopes, (*shape, 2, 2)).reshape(-1, 2, 2)
-    n = curve.shape[1]
-    k = np.asarray(pressure, float)
-    k = k.reshape(-1, n) if k.ndim > len(shape) else np.broadcast_to(k, shape).reshape(-1, 1)
-    k = np.broadcast_to(k, (len(curve), n))[:, 1:-1, None]
+    k = _pressure_rows(pressure, shape, n)[:, 1:-1, None]
+
+    # the left side of the scheme and the force of the fixed ends, eq. (2), never change
     factor, fixed = _clamped_system(curve, slopes, tension, rigidity, dt)
+
     n_iter = np.zeros(len(curve), np.intp)
     moving = np.ones(len(curve), bool)
     for step in range(1, max_iter + 1):
-        inner = curve[moving, 1:-1] + dt * (k[moving] * normals(curve[moving])[:, 1:-1] + fixed[moving])
-        solved = cho_solve_banded((factor, True), inner.transpose(1, 0, 2).reshape(n - 2, -1))
-        new = solved.reshape(n - 2, -1, 2).transpose(1, 0, 2)
+        # eq. (1): the pressure along the normals of now, the curve's own forces of the next step
+        force = k[moving] * normals(curve[moving])[:, 1:-1] + fixed[moving]
+        new = _solve_curves(factor, curve[moving, 1:-1] + dt * force)
+
+        # a curve that has come to rest stays as it is
         change = np.zeros(len(curve))
         change[moving] = np.sqrt(((new - curve[moving, 1:-1]) ** 2).sum(axis=(1, 2)))
         curve[moving, 1:-1] = new
@@ -148,11 +175,27 @@ def inflate(
     return Balloon(curve.reshape(start.shape), start, n_iter.reshape(shape), ~moving.reshape(shape))
 
 
+def _pressure_rows(pressure: ArrayLike, shape: tuple[int, ...], n: int) -> NDArray[np.float64]:
+    """The pressure at each snaxel of each curve, shape (B, n): one for all, one a curve, or one a snaxel."""
+    k = np.asarray(pressure, float)
+    k = k.reshape(-1, n) if k.ndim > len(shape) else np.broadcast_to(k, shape).reshape(-1, 1)
+    return np.broadcast_to(k, (int(np.prod(shape)), n))
+
+
+def _solve_curves(factor: NDArray, right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solve (I + dt A) c = right for the free snaxels of each curve, both shape (B, n - 2, 2)."""
+    n_free = right.shape[1]
+    columns = right.transpose(1, 0, 2).reshape(n_free, -1)  # a column for each coordinate of each curve
+    return cho_solve_banded((factor, True), columns).reshape(n_free, -1, 2).transpose(1, 0, 2)
+
+
 def _clamped_system(
     curve: Points, slopes: Points, tension: float, rigidity: float, dt: float
 ) -> tuple[NDArray, NDArray]:
     """Cholesky factor of I + dt A (lower bands), and the force b (B, n - 2, 2) of the clamped ends."""
     n = curve.shape[1]
+
+    # the three lower bands of I + dt A: w1 (-1 2 -1) + w2 (1 -4 6 -4 1)
     bands = np.zeros((3, n - 2))
     bands[0] = 2 * tension + 6 * rigidity
     bands[0, [0, -1]] += rigidity  # the ghost node mirrors the first free one
@@ -160,6 +203,8 @@ def _clamped_system(
     bands[2] = rigidity
     bands *= dt
     bands[0] += 1
+
+    # what the fixed snaxels and the ghost nodes beyond them add to their two neighbours
     first, last = curve[:, 0], curve[:, -1]
     fixed = np.zeros((len(curve), n - 2, 2))
     fixed[:, 0] += (tension + 4 * rigidity) * first + 2 * rigidity * slopes[:, 0]

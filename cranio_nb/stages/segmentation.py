@@ -1,8 +1,9 @@
-"""Stage 1, bone: a CT in HU comes in -> the skull as a bool mask on the same grid goes out.
+"""Stage 1, segmentation: a CT in HU comes in -> the skull as a bool mask on the same grid goes out.
 
-Frame: voxel (plane, row, col). Lengths in mm, areas in mm2, attenuation in HU.
+Frame: voxel (plane, row, col). Lengths in mm, areas in mm2, attenuation in HU. Source: VISAPP 2011, section 2.
 
-The paper thresholds at [400, 1000] HU. Cortical bone goes past 1000 HU, so there is no upper bound unless one is set.
+The paper's three steps: a threshold at [400, 1000] HU, hole filling, and a search that discards artefacts. Cortical
+bone goes past 1000 HU, so there is no upper bound here unless one is set.
 """
 
 from __future__ import annotations
@@ -17,9 +18,17 @@ from ..volume import Volume
 BONE_HU = 400.0
 """Lowest HU of bone (the paper, section 2)."""
 
+_SAME_SLICE = np.zeros((3, 3, 3), bool)  # neighbours share an edge within their slice
+_SAME_SLICE[1] = ndimage.generate_binary_structure(2, 1)
+
 
 def segment(
-    ct: Volume, *, threshold: float = BONE_HU, upper: float = np.inf, max_hole: float = 60.0, min_part: float = 0.02
+    ct: Volume,
+    *,
+    threshold: float = BONE_HU,
+    upper: float = np.inf,
+    max_hole_mm2: float = 60.0,
+    min_part: float = 0.02,
 ) -> Volume:
     """Separate the skull from everything else: threshold, drop artefacts, fill the holes of the diploe and sinuses.
 
@@ -28,10 +37,10 @@ def segment(
     ct : Volume
         HU, shape (P, R, C), or a bool mask, which is only cleaned.
     threshold, upper : float
-        Bone is threshold <= HU <= upper.
-    max_hole : float
-        Holes of a slice up to this area in mm2 are filled. The cranial cavity (above 5000 mm2) never is.
-    min_part : float
+        HU: bone is threshold <= HU <= upper.
+    max_hole_mm2 : float
+        Holes of a slice up to this area are filled. The cranial cavity (above 5000 mm2) never is.
+    min_part : float, 0 to 1
         Loose parts smaller than this fraction of the skull's volume are dropped, as are larger ones that lie outside
         the head (couch, head holder).
 
@@ -47,16 +56,31 @@ def segment(
 
     Notes
     -----
-    Section 2 of the paper: "simple binarization", "hole filling", "a simple search process to discard acquisition
-    artifacts".
+    Section 2: "a simple binarization method", "a hole filling method to correct bone topology and a simple search
+    process to discard acquisition artifacts".
+
+    Examples
+    --------
+    A cube of bone with a pore in one slice, and a speck of metal outside it: the pore is filled, the speck is gone.
+
+    >>> hu = np.full((12, 20, 20), -1000)
+    >>> hu[1:11, 5:15, 5:15] = 900
+    >>> hu[5, 9:11, 9:11] = 100
+    >>> hu[5, 1, 1] = 3000
+    >>> bone = segment(Volume(hu, np.eye(4)))
+    >>> int(bone.voxels.sum()) == 10 * 10 * 10
+    True
     """
-    mask = ct.voxels if ct.voxels.dtype == bool else threshold_hu(ct.voxels, threshold, upper)
+    # threshold; all further work is in the box of what reaches it
+    mask = ct.voxels if ct.voxels.dtype == bool else apply_threshold(ct.voxels, threshold, upper)
     box = ndimage.find_objects(mask.view(np.uint8))
     if not box:
         raise InputRefused("NoBone", f"No voxel reaches {threshold:g} HU.", "Lower the bone threshold, or give a CT.")
+
+    # artefacts first, so that no hole of theirs is filled
     skull = drop_artefacts(mask[box[0]], min_part=min_part)
     out = np.zeros(ct.shape, bool)
-    out[box[0]] = fill_holes(skull, max_hole / float(np.prod(ct.spacing[1:])))
+    out[box[0]] = fill_holes(skull, max_hole_px=max_hole_mm2 / float(np.prod(ct.spacing[1:])))
     return ct.with_voxels(out)
 
 
@@ -79,13 +103,46 @@ def bone_of(scan: Volume, threshold: float | None = None) -> Volume:
     ------
     InputRefused
         ``ThresholdOfMask`` when a mask comes with a threshold; ``NoBone``.
+
+    Examples
+    --------
+    A mask goes the same way as the CT it came from:
+
+    >>> hu = np.full((6, 8, 8), -1000)
+    >>> hu[1:5, 2:6, 2:6] = 900
+    >>> from_ct, from_mask = bone_of(Volume(hu, np.eye(4))), bone_of(Volume(hu > 400, np.eye(4)))
+    >>> bool((from_ct.voxels == from_mask.voxels).all())
+    True
     """
     used = threshold_of(scan, threshold)
     return segment(scan) if used is None else segment(scan, threshold=used)
 
 
 def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
-    """The threshold in HU that `bone_of` uses; None for a mask. Parameters and errors as there."""
+    """The threshold that `bone_of` uses.
+
+    Parameters
+    ----------
+    scan : Volume
+        HU, or a bool mask, shape (P, R, C).
+    threshold : float, optional
+        Lowest HU of bone that was asked for.
+
+    Returns
+    -------
+    float or None
+        HU; None for a mask, which has no HU.
+
+    Raises
+    ------
+    InputRefused
+        ``ThresholdOfMask`` when a mask comes with a threshold.
+
+    Examples
+    --------
+    >>> threshold_of(Volume(np.zeros((2, 2, 2)), np.eye(4)))
+    400.0
+    """
     if scan.voxels.dtype != bool:
         return BONE_HU if threshold is None else threshold
     if threshold is not None:
@@ -93,8 +150,26 @@ def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
     return None
 
 
-def threshold_hu(hu: NDArray, threshold: float, upper: float = np.inf) -> NDArray[np.bool_]:
-    """Voxels with threshold <= HU <= upper, shape (P, R, C)."""
+def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDArray[np.bool_]:
+    """Mark the voxels between two thresholds.
+
+    Parameters
+    ----------
+    hu : ndarray, any shape
+        HU.
+    threshold, upper : float
+        HU, both included.
+
+    Returns
+    -------
+    ndarray of bool, shape of `hu`
+        threshold <= hu <= upper.
+
+    Examples
+    --------
+    >>> apply_threshold(np.array([399, 400, 1000, 1001]), 400, 1000)
+    array([False,  True,  True, False])
+    """
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 
 
@@ -105,12 +180,25 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     ----------
     mask : ndarray of bool, shape (P, R, C)
         Thresholded CT.
-    min_part : float
-        Smallest kept piece as a fraction of the skull.
+    min_part : float, 0 to 1
+        Smallest kept piece as a fraction of the largest.
 
     Returns
     -------
     ndarray of bool, shape (P, R, C)
+        The skull, and the large pieces whose middle lies in its bounding box.
+
+    Examples
+    --------
+    A frame keeps the piece inside it, and not the one beside it:
+
+    >>> frame = np.zeros((3, 9, 16), bool)
+    >>> frame[:, 1:8, 1:8] = True
+    >>> frame[:, 2:7, 2:7] = False
+    >>> inside, beside = np.zeros((2, *frame.shape), bool)
+    >>> inside[:, 4, 4], beside[:, 4, 12] = True, True
+    >>> bool((drop_artefacts(frame | inside | beside) == frame | inside).all())
+    True
     """
     labels, n_parts = ndimage.label(mask)
     if n_parts == 1:
@@ -119,27 +207,41 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     sizes[0] = 0
     boxes = ndimage.find_objects(labels)
     large = [part for part in range(1, n_parts + 1) if sizes[part] >= min_part * sizes.max()]
-    skull = max(large, key=lambda part: _extent(boxes[part - 1]) * sizes[part])
+
+    # the skull is large and encloses much; a couch plate encloses little
+    skull = max(large, key=lambda part: _n_voxels(boxes[part - 1]) * sizes[part])
+
+    # loose pieces of a skull lie within it, couch and head holder beside it
     keep = np.zeros(n_parts + 1, bool)
-    keep[[part for part in large if part == skull or _inside(boxes[part - 1], boxes[skull - 1])]] = True
+    keep[[part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]] = True
     return keep[labels]
 
 
-def fill_holes(mask: NDArray[np.bool_], max_hole: float) -> NDArray[np.bool_]:
-    """Fill the enclosed holes of each slice that hold at most `max_hole` pixels (diploe, sinuses; not the cavity).
+def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.bool_]:
+    """Fill the small enclosed holes of each slice (diploe, sinuses; not the cavity of the head).
 
     Parameters
     ----------
     mask : ndarray of bool, shape (P, R, C)
-    max_hole : float
-        Area in pixels.
+    max_hole_px : float
+        Largest area of a hole that is filled, pixels.
+
+    Returns
+    -------
+    ndarray of bool, shape (P, R, C)
+
+    Examples
+    --------
+    A hole of four pixels is filled, one of five is not:
+
+    >>> mask = np.ones((1, 5, 12), bool)
+    >>> mask[0, 2, 1:5] = mask[0, 2, 6:11] = False
+    >>> fill_holes(mask, max_hole_px=4)[0, 2].astype(int)
+    array([1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1])
     """
-    in_plane = np.zeros((3, 3, 3), bool)
-    in_plane[1] = ndimage.generate_binary_structure(2, 1)
-    labels, n_holes = ndimage.label(~mask, in_plane)
-    sizes = np.bincount(labels.ravel(), minlength=n_holes + 1)
-    small = sizes <= max_hole
-    small[0] = False
+    labels, n_holes = ndimage.label(~mask, _SAME_SLICE)
+    small = np.bincount(labels.ravel(), minlength=n_holes + 1) <= max_hole_px
+    small[0] = False  # the bone itself
     small[_border_labels(labels)] = False
     return mask | small[labels]
 
@@ -150,11 +252,11 @@ def _border_labels(labels: NDArray) -> NDArray:
     return np.unique(np.concatenate([edge.ravel() for edge in edges]))
 
 
-def _extent(box: tuple[slice, ...]) -> int:
-    """Voxels in a bounding box: a skull encloses much, a couch plate little."""
+def _n_voxels(box: tuple[slice, ...]) -> int:
+    """Voxels in a bounding box."""
     return int(np.prod([side.stop - side.start for side in box]))
 
 
-def _inside(inner: tuple[slice, ...], outer: tuple[slice, ...]) -> bool:
+def _is_inside(inner: tuple[slice, ...], outer: tuple[slice, ...]) -> bool:
     """Whether the middle of one box lies within another."""
     return all(o.start <= (i.start + i.stop) / 2 <= o.stop for i, o in zip(inner, outer, strict=True))

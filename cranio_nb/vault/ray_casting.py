@@ -1,8 +1,8 @@
 """Where rays from inside the head enter and leave the vault: a bone mask and directions come in -> radii go out.
 
-Frames: directions are unit vectors in the world (LPS) on a map (v, u); radii and lengths in mm from the eye.
+Frames: directions are unit vectors in the world (LPS) on a map (v, u); radii and lengths in mm from where rays start.
 
-First a coarse look tells where the outer surface is to be expected; then each ray is sampled about there, and the run
+A coarse pass first says where the outer surface is to be expected; then each ray is sampled about there, and the run
 of bone nearest to the expected surface is the vault. Scalp plates, the other side of the head and the skull base, all
 further away, are not mistaken for it.
 """
@@ -13,32 +13,42 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ..geometry.robust import cauchy_weights, reweighted_fit
+from ..geometry.slice_distance import plane_distances
 from ..volume import Volume
 
-_DEPTH, _HEIGHT = 16.0, 12.0  # mm below and above the expected outer surface where the vault is looked for
-_SAMPLE = 0.4  # mm along a ray
-_FAR_APART = 1.5  # mm between planes above which their stairs would show
-_BREAK = 3.0  # mm without bone along a ray that is still diploe
+NEAR_MM, FAR_MM = 25.0, 140.0
+"""Radii from the head's centre between which the vault lies, mm."""
+_DEPTH_MM, _HEIGHT_MM = 16.0, 12.0  # below and above the expected outer surface where the vault is looked for
+_SAMPLE_MM = 0.4  # along a ray
+_FAR_APART_MM = 1.5  # between planes above which their stairs would show
+_BREAK_MM = 3.0  # without bone along a ray that is still diploe
+_DISTANCE_BOUND_PX = 8.0
+_EVERY = 4  # rays of the map from one that the coarse pass follows to the next
+_STRAY_MM = 4.0  # off the fit by which an outermost voxel counts half
+_FADE_DEG = 25.0  # from where the fit matters most to where a ray counts a third
 
 
 def expected_radius(
     bone: Volume,
-    eye: NDArray[np.float64],
+    centre: NDArray[np.float64],
     directions: NDArray[np.float64],
-    level: float,
+    *,
+    typical: float,
     degrees: NDArray[np.float64],
     hidden: NDArray[np.bool_],
 ) -> NDArray[np.float64]:
-    """Where the outer surface is to be expected: a smooth robust fit to the outermost bone of a coarse look.
+    """Where the outer surface is to be expected: a smooth robust fit to the outermost bone of a coarse pass.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    eye : ndarray, shape (3,)
+    centre : ndarray, shape (3,)
         Where the rays start, world mm.
     directions : ndarray, shape (M, M, 3)
-    level : float
+        Unit vectors, world.
+    typical : float
         A typical outer radius, mm.
     degrees : ndarray, shape (M, M)
         How far each ray is from where the fit matters most.
@@ -48,16 +58,20 @@ def expected_radius(
     Returns
     -------
     ndarray, shape (M, M)
+        mm.
     """
-    skip = 4
-    lengths = np.arange(level - 35, level + 30, 1.0)
-    bone_at = _sample(bone, eye, directions[::skip, ::skip], lengths)
-    last = bone_at.shape[-1] - 1 - bone_at[..., ::-1].argmax(axis=-1)
-    outermost = np.where(bone_at.any(axis=-1), lengths[last], np.nan)
-    outermost[hidden[::skip, ::skip]] = np.nan
+    some = np.s_[::_EVERY, ::_EVERY]
+    # the last bone along each ray of the coarse pass
+    lengths = np.arange(typical - 35, typical + 30, 1.0)
+    steps = bone.steps(directions[some])[..., None, :]
+    is_bone = bone.at_index(bone.to_voxel(centre) + steps * lengths[:, None], outside=False)
+    last = is_bone.shape[-1] - 1 - is_bone[..., ::-1].argmax(axis=-1)
+    outermost = np.where(is_bone.any(axis=-1), lengths[last], np.nan)
+    outermost[hidden[some]] = np.nan
+    # a surface through it, most faithful where it matters most
     v, u = np.indices(hidden.shape) / (len(hidden) - 1) * 2 - 1
-    weight = np.exp(-((degrees[::skip, ::skip] / 25.0) ** 2))
-    return _robust_surface(v[::skip, ::skip], u[::skip, ::skip], outermost, weight)(v, u)
+    weight = np.exp(-((degrees[some] / _FADE_DEG) ** 2))
+    return _robust_surface(v[some], u[some], outermost, weight)(v, u)
 
 
 def _robust_surface(v: NDArray, u: NDArray, values: NDArray, weight: NDArray):
@@ -65,101 +79,90 @@ def _robust_surface(v: NDArray, u: NDArray, values: NDArray, weight: NDArray):
     powers = [(i, j) for i in range(5) for j in range(5 - i)]
     known = np.isfinite(values)
     basis = np.stack([v[known] ** i * u[known] ** j for i, j in powers], axis=-1)
-    target, base = values[known], np.sqrt(weight[known])
-    weights = base
-    for _ in range(8):
-        system = np.concatenate([basis * weights[:, None], 1e-3 * np.eye(len(powers))])
-        c = np.linalg.lstsq(system, np.concatenate([target * weights, np.zeros(len(powers))]), rcond=None)[0]
-        residual = np.abs(target - basis @ c)
-        weights = base / (1 + (residual / 4.0) ** 2)
+    base = np.sqrt(weight[known])
+    c = reweighted_fit(
+        basis,
+        values[known],
+        lambda residuals: cauchy_weights(residuals, _STRAY_MM, times=base),
+        start=base,
+        n_iter=8,
+        ridge=1e-3,
+    )
     return lambda v, u: sum(k * v**i * u**j for k, (i, j) in zip(c, powers, strict=True))
 
 
-def _sample(bone: Volume, eye: NDArray, directions: NDArray, lengths: NDArray) -> NDArray[np.bool_]:
-    """Whether the nearest voxel is bone at lengths (n,) or (..., n) along directions (..., 3), shape (..., n)."""
-    step = directions @ np.linalg.inv(bone.affine[:3, :3]).T
-    start = bone.to_voxel(eye)
-    index = [np.rint(start[i] + step[..., i, None] * lengths).astype(np.int32) for i in range(3)]
-    inside = np.logical_and.reduce([(k >= 0) & (k < n) for k, n in zip(index, bone.shape, strict=True)])
-    return bone.voxels[tuple(np.where(inside, k, 0) for k in index)] & inside
-
-
-def cast(
-    bone: Volume, eye: NDArray[np.float64], directions: NDArray[np.float64], expected: NDArray[np.float64]
+def surface_radii(
+    bone: Volume, centre: NDArray[np.float64], directions: NDArray[np.float64], expected: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Inner and outer radius of the run of bone nearest to the expected outer surface.
+    """Outer and inner radius of the run of bone nearest to the expected outer surface.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    eye : ndarray, shape (3,)
+    centre : ndarray, shape (3,)
+        Where the rays start, world mm.
     directions : ndarray, shape (..., 3)
+        Unit vectors, world.
     expected : ndarray, shape (...)
+        Radius of the expected outer surface, mm.
 
     Returns
     -------
-    inner, outer : ndarray, shape (...)
-        mm; nan where a ray meets no bone.
+    outer, inner : ndarray, shape (...)
+        mm, between voxels; nan where a ray meets no bone.
     """
     rays, level = directions.reshape(-1, 3), expected.ravel()
-    field, box = _field(bone, eye, rays[::8], level[::8])
-    offsets = np.arange(-_DEPTH, _HEIGHT, _SAMPLE)
+    field = _field(bone, centre, rays[::8], level[::8])
+    offsets = np.arange(-_DEPTH_MM, _HEIGHT_MM, _SAMPLE_MM)
     radii = np.full((2, len(rays)), np.nan)
-    step = rays @ np.linalg.inv(box.affine[:3, :3]).T
-    start = box.to_voxel(eye)
+    start, step = field.to_voxel(centre), field.steps(rays)
     for some in np.array_split(np.arange(len(rays)), len(rays) // 250 + 1):
         at = start[:, None, None] + step[some].T[..., None] * (level[some, None] + offsets)
-        values = ndimage.map_coordinates(field, at, order=1, mode="constant", cval=0.0)
+        values = ndimage.map_coordinates(field.voxels, at, order=1, mode="constant", cval=0.0)
         radii[:, some] = _nearest_run(values, offsets)
-    inner, outer = (radii + level).reshape(2, *expected.shape)
-    return inner, outer
+    outer, inner = (radii + level).reshape(2, *expected.shape)
+    return outer, inner
 
 
-def _field(bone: Volume, eye: NDArray, rays: NDArray, level: NDArray) -> tuple[NDArray[np.float32], Volume]:
-    """The bone around the ends of rays as a field with its surface at 0.5, and the box it fills."""
-    ends = np.concatenate([eye + rays * (level + d)[:, None] for d in (-_DEPTH, _HEIGHT)])
-    index = bone.to_voxel(ends)
-    low = np.clip(np.floor(index.min(axis=0)).astype(int) - 2, 0, np.array(bone.shape) - 1)
-    high = np.clip(np.ceil(index.max(axis=0)).astype(int) + 3, low + 1, bone.shape)
-    box = bone.crop((slice(low[0], high[0]), slice(low[1], high[1]), slice(low[2], high[2])))
-    far_apart = bone.spacing[0] > _FAR_APART
-    return (_plane_distances(box.voxels) if far_apart else box.voxels.astype(np.float32)), box
+def _field(bone: Volume, centre: NDArray, rays: NDArray, level: NDArray) -> Volume:
+    """The bone around the ends of rays as a field with its surface at 0.5."""
+    ends = np.concatenate([centre + rays * (level + d)[:, None] for d in (-_DEPTH_MM, _HEIGHT_MM)])
+    part = bone.crop(bone.box_around(bone.to_voxel(ends), margin=2))
+    far_apart = bone.spacing[0] > _FAR_APART_MM
+    return Volume(_distance_field(part.voxels) if far_apart else part.voxels.astype(np.float32), part.affine)
 
 
-def _plane_distances(mask: NDArray[np.bool_], reach: float = 8.0) -> NDArray[np.float32]:
-    """In each plane 0.5 + signed distance to the mask's edge in px, bounded by `reach`; in empty planes below 0.
-
-    Between far-apart planes 0 and 1 would blend into stairs (shape-based interpolation, Raya and Udupa 1990).
-    """
-    field = np.full(mask.shape, 0.5 - reach, np.float32)
-    for plane in np.flatnonzero(mask.any(axis=(1, 2))):
-        inside = ndimage.distance_transform_edt(np.pad(mask[plane], 1))[1:-1, 1:-1]
-        outside = ndimage.distance_transform_edt(~mask[plane])
-        field[plane] = np.clip(inside - outside, -reach, reach) + np.where(mask[plane], 0.0, 1.0)
-    return field
+def _distance_field(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Distances to the edge in each plane, px: 1 on its inside and 0 on its outside; bone ends with the box."""
+    beside = ((0, 0), (1, 1), (1, 1))
+    field = plane_distances(np.pad(mask, beside), _DISTANCE_BOUND_PX)[:, 1:-1, 1:-1] + np.where(mask, 0.0, 1.0)
+    field[~mask.any(axis=(1, 2))] = 0.5 - _DISTANCE_BOUND_PX
+    return field.astype(np.float32)
 
 
 def _nearest_run(values: NDArray, offsets: NDArray) -> tuple[NDArray, NDArray]:
-    """Offsets where the run of bone nearest to 0 begins and ends on each ray, between samples; short breaks join."""
+    """Offsets where the run of bone nearest to 0 ends and begins on each ray, between samples; short breaks join."""
     n = len(offsets)
     index = np.arange(n)
     bone = values > 0.5
-    breaks = int(_BREAK / _SAMPLE)
+    breaks = int(_BREAK_MM / _SAMPLE_MM)
     none = -(10**6)
+    # a run begins at bone that has none before it within a break, and ends where none follows
     before = np.maximum.accumulate(np.where(bone, index, none), axis=1)
     before = np.concatenate([np.full((len(bone), 1), none), before[:, :-1]], axis=1)
     begins = bone & (index - before > breaks)
     after = np.minimum.accumulate(np.where(bone, index, -none)[:, ::-1], axis=1)[:, ::-1]
     after = np.concatenate([after[:, 1:], np.full((len(bone), 1), -none)], axis=1)
     finishes = bone & (after - index > breaks)
+    # the run that ends nearest to the expected surface
     last = np.abs(np.where(finishes, offsets, np.inf)).argmin(axis=1)
     first = np.where(begins & (index <= last[:, None]), index, -1).max(axis=1)
     rays = np.arange(len(bone))
     empty = ~bone.any(axis=1)
     inner = _crossing(values, offsets, rays, first, -1)
     outer = _crossing(values, offsets, rays, last, +1)
-    return np.where(empty, np.nan, inner), np.where(empty, np.nan, outer)
+    return np.where(empty, np.nan, outer), np.where(empty, np.nan, inner)
 
 
 def _crossing(values: NDArray, offsets: NDArray, rays: NDArray, at: NDArray, side: int) -> NDArray[np.float64]:
@@ -167,4 +170,4 @@ def _crossing(values: NDArray, offsets: NDArray, rays: NDArray, at: NDArray, sid
     beside = np.clip(at + side, 0, len(offsets) - 1)
     here, there = values[rays, at], values[rays, beside]
     t = np.clip((here - 0.5) / np.maximum(here - there, 1e-6), 0, 1)
-    return offsets[at] + t * side * _SAMPLE * (beside != at)
+    return offsets[at] + t * side * _SAMPLE_MM * (beside != at)

@@ -10,7 +10,7 @@ rim (`skip`) and fitted over a neighbourhood (`reach`), both arc lengths as in t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,16 +27,17 @@ class RayProfile:
         Slice (row, col).
     angles : ndarray, shape (K,)
         Radians, evenly spaced.
-    inner, outer : ndarray, shape (P, K)
-        Radii of the inner and outer surface along each ray; nan where the ray meets no bone.
+    outer, inner : ndarray, shape (P, K)
+        Radii of the outer and inner surface along each ray; nan where the ray meets no bone.
     missing : ndarray of bool, shape (P, K)
         Rays in which bone is missing: the gap.
     """
 
     centre: NDArray[np.float64]
     angles: NDArray[np.float64]
-    inner: NDArray[np.float64]
+    _: KW_ONLY
     outer: NDArray[np.float64]
+    inner: NDArray[np.float64]
     missing: NDArray[np.bool_]
 
     @property

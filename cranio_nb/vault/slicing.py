@@ -17,8 +17,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..volume import Volume
-from .radius_map import RadialChart
-from .ray_grid import extended
+from .ray_grid import RadiusMap, filled_from_nearest
 from .rims import RayProfile
 
 _APART = 1.0  # mm between slices on the vault
@@ -67,21 +66,21 @@ class Fan:
 def axial_frames(bone: Volume, planes: range) -> NDArray[np.float64]:
     """Frames of planes of the scan itself, slice (row, col) in px, shape (P, 3, 3)."""
     origins = [bone.to_world([plane, 0, 0]) for plane in planes]
-    return np.stack([[origin, bone.affine[:3, 1], bone.affine[:3, 2]] for origin in origins])
+    return np.stack([[origin, *bone.edges[1:]] for origin in origins])
 
 
-def fans(chart: RadialChart, n: int) -> list[Fan]:
+def fans(radius_map: RadiusMap, n: int) -> list[Fan]:
     """Fans whose slices cross the hole in `n` directions, evenly turned; the slices of the first cross its short side.
 
     Parameters
     ----------
-    chart : RadialChart
+    radius_map : RadiusMap
     n : int
         Number of directions, 1 or more.
     """
-    hole = chart.directions[chart.hole]
-    radius = float(np.nanmedian(chart.outer))
-    across, along, middle = chart.axes
+    hole = radius_map.grid.directions[radius_map.hole]
+    radius = float(np.nanmedian(radius_map.outer))
+    across, along, middle = radius_map.grid.axes
     out = []
     for turn in np.arange(n) * np.pi / n:
         hinge = np.cos(turn) * across + np.sin(turn) * along
@@ -94,18 +93,18 @@ def fans(chart: RadialChart, n: int) -> list[Fan]:
     return out
 
 
-def profile(chart: RadialChart, fan: Fan) -> RayProfile:
+def profile(radius_map: RadiusMap, fan: Fan) -> RayProfile:
     """Radii and gap of every slice of a fan, read off the chart; lengths in mm."""
-    at = chart.locate(fan.directions)
-    inside = ((at >= 0) & (at <= len(chart.outer) - 1)).all(axis=0)
-    hole = ndimage.map_coordinates(chart.hole.astype(np.float32), at, order=1) > 0.5
-    known = np.isfinite(chart.outer)
+    at = radius_map.grid.locate(fan.directions)
+    inside = ((at >= 0) & (at <= radius_map.grid.n - 1)).all(axis=0)
+    hole = ndimage.map_coordinates(radius_map.hole.astype(np.float32), at, order=1) > 0.5
+    known = np.isfinite(radius_map.outer)
     seen = inside & (ndimage.map_coordinates(known.astype(np.float32), at, order=1) > 0.99)
-    inner, outer = (
-        np.where(seen, ndimage.map_coordinates(extended(radius), at, order=1, mode="nearest"), np.nan)
-        for radius in (chart.inner, chart.outer)
+    outer, inner = (
+        np.where(seen, ndimage.map_coordinates(filled_from_nearest(radius), at, order=1, mode="nearest"), np.nan)
+        for radius in (radius_map.outer, radius_map.inner)
     )
-    return RayProfile(np.zeros(2), fan.angles, inner, outer, hole)
+    return RayProfile(np.zeros(2), fan.angles, outer=outer, inner=inner, missing=hole)
 
 
 def picture(
@@ -127,5 +126,4 @@ def picture(
     ndarray of bool, shape (R, C)
     """
     origin, row, col = frame
-    index = volume.to_voxel(origin + rows[:, None, None] * row + cols[None, :, None] * col)
-    return ndimage.map_coordinates(volume.voxels, np.rint(np.moveaxis(index, -1, 0)), order=0, mode="constant")
+    return volume.at(origin + rows[:, None, None] * row + cols[None, :, None] * col, outside=False)

@@ -17,6 +17,7 @@ reflections alone: there is no rigid motion whose mid-plane would have to be tak
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -31,12 +32,15 @@ Array = NDArray[np.float64]
 _STEP = np.radians(2.0)  # between rays: 2.6 mm on the vault
 _SKY = np.radians(105.0)  # from the top of the head down to which the surface is compared
 _NEAR, _FAR = 25.0, 140.0  # mm from the eye between which the vault lies
+_STRIDE, _HALVINGS = 0.75, 20  # mm between samples of a ray; the edge between two is found to 1e-6 mm
+_HALF = 0.5 - 1e-6  # of a blended mask is bone; so a ray midway between bone and none is in bone despite rounding
 _RIM = 2  # rays beside a hole that are left out: its edge is bevelled or worn
 _YAWS, _ROLLS = np.radians(np.arange(-36, 37, 6)), np.radians(np.arange(-24, 25, 8))
 _FARTHEST = 6.0  # mm: a pair further apart counts as no pair when starts are compared
 _CUT = 4.685 * 1.4826  # Tukey's constant for residuals in units of their median
 _LEAST_CUT = 0.5  # mm
-_TOL, _MAX_STEPS = 5e-3, 60  # mm, and 100 mm times radians; far below what a skull's own asymmetry leaves open
+_TOL, _MAX_STEPS = 1e-8, 100  # mm, and 100 mm times radians: so still that the plane hinges on no rounding
+_SETTLED = 5e-3  # the same, but for `converged`: far below what a skull's own asymmetry leaves open
 _LEAST_PAIRS = 0.25  # part of the sky's rays that must have a partner
 
 
@@ -114,6 +118,11 @@ class OuterSurface:
     points: Array
     normals: Array
 
+    @cached_property
+    def interior(self) -> Array:
+        """1 on rays that see the surface with all their neighbours, else 0, shape (M, M)."""
+        return ndimage.binary_erosion(np.isfinite(self.normals).all(axis=-1), np.ones((3, 3))).astype(float)
+
     def locate(self, away: Array) -> Array:
         """Fractional chart indices (v, u) of directions of any length (n, 3), shape (2, n)."""
         x, y, z = (away @ self.axes.T).T
@@ -122,7 +131,7 @@ class OuterSurface:
         return np.stack([y * scale, x * scale]) + (len(self.radius) - 1) / 2
 
 
-def find(bone: Volume, centre: Array) -> SymmetryPlane:
+def find_symmetry_plane(bone: Volume, centre: Array) -> SymmetryPlane:
     """Find the symmetry plane of a skull, whole or with holes.
 
     Parameters
@@ -138,7 +147,7 @@ def find(bone: Volume, centre: Array) -> SymmetryPlane:
     InputRefused
         ``NoSymmetry`` when too little of the vault has a counterpart on the other side.
     """
-    surface = look(bone, np.asarray(centre, float))
+    surface = measure_outer_surface(bone, np.asarray(centre, float))
     seen = np.isfinite(surface.normals).all(axis=-1)
     points = surface.points[seen] - surface.eye
     normal, shift = _start(surface, points[::3])
@@ -154,7 +163,9 @@ def find(bone: Volume, centre: Array) -> SymmetryPlane:
             f"{paired.sum()} of the vault's rays have a counterpart on the other side; more of the skull is wanted.",
             "Use a scan of the whole vault, or a method that needs no symmetry.",
         )
-    return _described(bone, surface, normal, shift, float(np.median(np.abs(distances[paired]))), n_iter, moved <= _TOL)
+    return _described(
+        bone, surface, normal, shift, float(np.median(np.abs(distances[paired]))), n_iter, moved <= _SETTLED
+    )
 
 
 def residuals(surface: OuterSurface, plane: SymmetryPlane) -> Array:
@@ -181,7 +192,7 @@ def _described(
     )
 
 
-def look(bone: Volume, eye: Array) -> OuterSurface:
+def measure_outer_surface(bone: Volume, eye: Array) -> OuterSurface:
     """See the outer surface from the eye (world mm), smoothed over neighbouring rays, without the edges of holes."""
     axes = _axes(bone)
     half = int(np.ceil(_SKY / _STEP)) + _RIM + 2
@@ -216,32 +227,28 @@ def _polar(n: int) -> Array:
 
 
 def _outermost(bone: Volume, eye: Array, directions: Array) -> Array:
-    """Radius in mm, between voxels, where rays (n, 3) leave the outermost bone; nan where they meet none."""
+    """Radius in mm where rays (n, 3) leave the outermost bone; nan where they meet none.
+
+    Bone is where the mask, blended between its voxels, exceeds a half. This has no leaps from voxel to voxel, so that
+    a rounding of the affine moves no edge.
+    """
     start, step = bone.to_voxel(eye), directions @ np.linalg.inv(bone.affine[:3, :3]).T
-    lengths = np.arange(_FAR, _NEAR, -0.75)
+
+    def in_bone(rays: NDArray[np.intp], length: Array | float) -> NDArray[np.bool_]:
+        at = start[:, None] + length * step[rays].T
+        return ndimage.map_coordinates(bone.voxels, at, order=1, mode="grid-constant", output=float) > _HALF
+
+    # the outermost sample in bone
     radius = np.full(len(directions), np.nan)
-    for length in lengths:
+    for length in np.arange(_FAR, _NEAR, -_STRIDE):
         open_rays = np.flatnonzero(np.isnan(radius))
-        index = np.rint(start + length * step[open_rays]).astype(np.intp)
-        inside = ((index >= 0) & (index < bone.shape)).all(axis=1)
-        hit = bone.voxels[tuple(index[inside].T)]
-        radius[open_rays[inside][hit]] = length
-    found = np.isfinite(radius)
-    radius[found] += _edge(bone, start + radius[found, None] * step[found], step[found])
+        radius[open_rays[in_bone(open_rays, length)]] = length
+    # the edge between it and the next one outwards, by bisection
+    found = np.flatnonzero(np.isfinite(radius))
+    for halving in range(1, _HALVINGS + 1):
+        further = radius[found] + _STRIDE / 2**halving
+        radius[found] = np.where(in_bone(found, further), further, radius[found])
     return radius
-
-
-def _edge(bone: Volume, at: Array, step: Array) -> Array:
-    """How far, in mm along rays with `step` voxels per mm (n, 3), the mask blended between its voxels stays bone."""
-    offsets = np.arange(-1.0, 1.01, 0.1) * 1.5 * float(bone.spacing.max())
-    values = ndimage.map_coordinates(
-        bone.voxels, (at[..., None] + step[..., None] * offsets).transpose(1, 0, 2), order=1, output=np.float32
-    )
-    last = len(offsets) - 1 - (values[:, ::-1] > 0.5).argmax(axis=1)
-    beyond = np.minimum(last + 1, len(offsets) - 1)
-    rays = np.arange(len(at))
-    here, there = values[rays, last], values[rays, beyond]
-    return offsets[last] + (here - 0.5) / np.maximum(here - there, 1e-3) * (offsets[1] - offsets[0])
 
 
 def _blurred(radius: Array) -> Array:
@@ -290,14 +297,18 @@ def _step(surface: OuterSurface, points: Array, normal: Array, shift: float) -> 
     """One Gauss-Newton step with Tukey's weights; also how far it moved the plane (mm, and 100 mm times radians)."""
     across = np.linalg.svd(normal[None])[2][1:]
     height = points @ normal - shift
-    distance, normals = _distances(surface, _reflected(points, normal, shift))
-    paired = np.isfinite(distance)
-    distance, normals, height, x = distance[paired], normals[paired], height[paired], points[paired]
+    away = _reflected(points, normal, shift)
+    distance, normals = _distances(surface, away)
+    # pairs fade out towards the rim of what is seen: one that came and went would keep the steps from settling
+    fade = ndimage.map_coordinates(surface.interior, surface.locate(away), order=1)
+    paired = fade > 0
+    distance, normals, fade = distance[paired], normals[paired], fade[paired]
+    height, x = height[paired], points[paired]
     lean = normals @ normal
     turns = [-2 * ((x @ e) * lean + height * (normals @ e)) for e in across]
     slopes = np.stack([2 * lean, *turns], axis=1)
     cut = max(_CUT * float(np.median(np.abs(distance))), _LEAST_CUT)
-    weight = np.maximum(1 - (distance / cut) ** 2, 0.0)  # the root of the biweight
+    weight = np.maximum(1 - (distance / cut) ** 2, 0.0) * np.sqrt(fade)  # the root of the biweight
     move = np.linalg.lstsq(slopes * weight[:, None], -distance * weight, rcond=None)[0]
     turned = normal + move[1:] @ across
     return turned / np.linalg.norm(turned), shift + move[0], float(np.abs(move * [1, 100, 100]).max())

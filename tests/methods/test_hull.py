@@ -6,7 +6,6 @@ import pytest
 from cranio_nb.errors import NoOpening
 from cranio_nb.methods.design import design
 from cranio_nb.opening import Opening
-from cranio_nb.stages.prosthesis_volume import solid_piece
 from cranio_nb.volume import Volume
 
 INNER, OUTER, HALF = 72.0, 80.0, 22.0  # mm, mm, degrees
@@ -63,8 +62,8 @@ def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, openings):
     """Every point of a slice's hull is a point of the hull in space."""
     (part,) = design(skull("round"), openings("round"), method="hull").working
     sliced = design(skull("round"), openings("round"), axial=True, method="hull").patch
-    away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.eye
-    v, u = np.rint(part.vault.locate(away)).astype(int)
+    away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.grid.centre
+    v, u = np.rint(part.vault.grid.locate(away)).astype(int)
     top = part.outer[v, u]
     above = np.linalg.norm(away, axis=1) - top
     assert np.quantile(above[np.isfinite(top)], 0.99) < 0.6 * sliced.spacing.max()
@@ -83,30 +82,3 @@ def test_a_hull_is_no_deeper_or_higher_than_its_two_surfaces(skull, openings):
     inside = part.vault.hole
     assert np.isfinite(part.outer[inside]).mean() > 0.98 and np.isnan(part.outer[~inside]).all()
     assert (part.outer - part.inner)[np.isfinite(part.outer)].min() > 2.0
-
-
-class TestSolidPiece:
-    GRID = np.eye(4) * [0.5, 0.5, 0.5, 1]
-
-    def test_drops_films_pores_and_what_lies_elsewhere(self):
-        patch, opening, bone = np.zeros((3, 30, 30, 30), bool)
-        patch[5:15, 5:15, 5:15] = True
-        patch[10, 10, 10] = False  # a pore
-        patch[15, 5:15, 5:25] = True  # a film, half a mm thick, beside it
-        patch[20:28, 20:28, 20:28] = True  # elsewhere
-        opening[8:12, 8:12, 8:12] = True
-        made = solid_piece(patch, Volume(opening, self.GRID), Volume(bone, self.GRID))
-        wanted = np.zeros_like(patch)
-        wanted[5:15, 5:15, 5:15] = True
-        np.testing.assert_array_equal(made & wanted, wanted)
-        assert not made[16:].any() and not made[15, :, 16:].any()
-
-    def test_keeps_off_bone_and_away_from_holes_it_does_not_reach(self):
-        patch, opening, bone = np.zeros((3, 20, 20, 20), bool)
-        patch[5:15, 5:15, 5:15] = True
-        bone[10, 10, 10] = True
-        patch &= ~bone
-        opening[7:9, 7:9, 7:9] = True
-        assert not (solid_piece(patch, Volume(opening, self.GRID), Volume(bone, self.GRID)) & bone).any()
-        empty = Volume(np.zeros_like(bone), self.GRID)
-        assert not solid_piece(patch, empty, Volume(bone, self.GRID)).any()

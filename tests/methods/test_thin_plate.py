@@ -10,7 +10,7 @@ from scipy import ndimage
 from cranio_nb.errors import InputRefused
 from cranio_nb.methods.design import design
 from cranio_nb.methods.thin_plate import bend
-from cranio_nb.vault import radius_map, symmetry
+from cranio_nb.vault import radius_measurement, symmetry
 from cranio_nb.volume import Volume
 
 N, MM = 41, 2.0
@@ -161,7 +161,7 @@ def test_the_working_holds_a_plate_for_each_opening(made, skull):
 
 
 def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
-    found = symmetry.find(skull("unilateral"), made.working[0].chart.eye)
+    found = symmetry.find_symmetry_plane(skull("unilateral"), made.working[0].chart.grid.centre)
     for residual, used in ((1.2, True), (1.4, False)):
         monkeypatch.setattr(symmetry, "find", lambda *_, r=residual: replace(found, residual=r))
         plate = design(skull("unilateral"), method="thin-plate")
@@ -171,11 +171,11 @@ def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
 
 def test_a_blurred_rim_does_not_pull_the_plate_down(skull, made):
     (plate,) = made.working
-    beside = ndimage.distance_transform_edt(~plate.chart.hole) * plate.chart.mm
+    beside = ndimage.distance_transform_edt(~plate.chart.hole) * plate.chart.step_mm
     grazed = (beside > 0) & (beside <= 0.8)
     assert grazed.any()
     low = replace(plate.chart, outer=np.where(grazed, plate.chart.outer - 5.0, plate.chart.outer))
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(radius_map, "look", lambda bone, one: low)
+        patch.setattr(radius_measurement, "measure_around", lambda bone, one: low)
         again = design(skull("unilateral"), method="thin-plate")
     np.testing.assert_allclose(again.working[0].outer, plate.outer, atol=1e-6)

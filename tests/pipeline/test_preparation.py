@@ -5,7 +5,7 @@ import pytest
 
 import cranio_nb as cn
 from cranio_nb.errors import InputRefused, NoOpening
-from cranio_nb.output.files import write_nifti
+from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.pipeline.preparation import Clock, check_margin, prepare, read_truth, touches_border, within_planes
 
 

@@ -7,7 +7,7 @@ import cranio_nb as cn
 from cranio_nb.errors import InputRefused
 from cranio_nb.methods import catalogue
 from cranio_nb.methods.piece import Piece
-from cranio_nb.output.files import write_nifti
+from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import design_inside, run_design
 from cranio_nb.pipeline.trial import Contender, attempt

@@ -7,17 +7,16 @@ import pytest
 from click.testing import CliRunner
 from scipy import ndimage
 
+import cranio_nb as cn
 from cranio_nb.cli.main import main
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.methods import thin_plate
-from cranio_nb.methods.design import design
-from cranio_nb.output.files import write_nifti
+from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.prior import alignment, shape_prior, vault_radii
 from cranio_nb.prior import study as prior_study
 from cranio_nb.prior.file import VERSION, load, save
 from cranio_nb.prior.shape_prior import Expected
-from cranio_nb.vault import radius_map as radial
-from cranio_nb.vault import ray_casting
+from cranio_nb.vault import radius_measurement, ray_casting
 from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 
@@ -138,10 +137,12 @@ def test_the_mirror_image_is_foretold_as_the_mirror_image(learned, hole):
 
 def test_a_hole_in_a_head_is_foretold_on_its_chart(learned, phantom, skull):
     case, bone = phantom("round", 0), skull("round", 0)
-    chart = radial.look(bone, find_openings(bone)[0])
+    chart = radius_measurement.measure_around(bone, find_openings(bone)[0])
     found = shape_prior.expect(learned, bone, chart)
     whole = Volume(case.bone | case.implant, case.affine)
-    inner, outer = ray_casting.cast(whole, chart.eye, chart.directions, np.nan_to_num(found.outer, nan=80.0))
+    inner, outer = ray_casting.cast(
+        whole, chart.grid.centre, chart.grid.directions, np.nan_to_num(found.outer, nan=80.0)
+    )
     assert np.isfinite(found.outer[chart.hole]).all()
     assert np.abs(found.outer - outer)[chart.hole].mean() < 0.8
     assert np.abs(found.inner - inner)[chart.hole].mean() < 0.8
@@ -152,7 +153,7 @@ def test_a_hole_in_a_head_is_foretold_on_its_chart(learned, phantom, skull):
 def test_the_mirrored_head_is_foretold_mirrored(learned, skull):
     bone = skull("round", 0)
     twin = mirror_image(bone)
-    charts = [radial.look(one, find_openings(one)[0]) for one in (bone, twin)]
+    charts = [radius_measurement.measure_around(one, find_openings(one)[0]) for one in (bone, twin)]
     found = [shape_prior.expect(learned, one, chart) for one, chart in zip((bone, twin), charts, strict=True)]
     middles = [np.nanmean(one.outer[chart.hole]) for one, chart in zip(found, charts, strict=True)]
     assert middles[0] == pytest.approx(middles[1], abs=0.3)
@@ -241,10 +242,10 @@ def test_the_command_refuses_a_folder_without_skulls(tmp_path):
 def test_a_prior_draws_the_plate_towards_what_skulls_let_expect_but_not_off_the_rim(learned, skull, tmp_path):
     bone = skull("unilateral")
     save(learned, tmp_path / "prior.npz")
-    (alone,) = design(bone, method="thin-plate").working
-    made = design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
+    (alone,) = cn.design(bone, method="thin-plate").working
+    made = cn.design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
     (plate,) = made.working
-    inside = ndimage.distance_transform_edt(plate.chart.hole) * plate.chart.mm
+    inside = ndimage.distance_transform_edt(plate.chart.hole) * plate.chart.step_mm
     rim, middle = (inside > 0) & (inside < 3), inside > 15
     for bent, held, expected in zip(
         (alone.outer, alone.inner), (plate.outer, plate.inner), plate.expected, strict=True
@@ -263,8 +264,8 @@ def test_a_prior_that_does_not_reach_the_hole_changes_nothing(learned, skull, tm
         return Expected(*np.full((2, *chart.hole.shape), np.nan), None)
 
     monkeypatch.setattr(thin_plate, "expect", nowhere)
-    made = design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
-    np.testing.assert_array_equal(made.patch.voxels, design(bone, method="thin-plate").patch.voxels)
+    made = cn.design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
+    np.testing.assert_array_equal(made.patch.voxels, cn.design(bone, method="thin-plate").patch.voxels)
     assert made.working[0].expected is None
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.stages.segmentation import drop_artefacts, fill_holes, segment, threshold_hu
+from cranio_nb.stages.segmentation import apply_threshold, drop_artefacts, fill_holes, segment
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -33,8 +33,8 @@ def test_the_shell_is_found_as_it_is(shell):
 
 def test_the_threshold_belongs_to_bone_and_so_does_the_upper_bound():
     hu = np.array([[[-1000, 399, 400, 401, 1000, 1001, 3071]]], np.int16)
-    np.testing.assert_array_equal(threshold_hu(hu, 400)[0, 0], [0, 0, 1, 1, 1, 1, 1])
-    np.testing.assert_array_equal(threshold_hu(hu, 400, 1000)[0, 0], [0, 0, 1, 1, 1, 0, 0])
+    np.testing.assert_array_equal(apply_threshold(hu, 400)[0, 0], [0, 0, 1, 1, 1, 1, 1])
+    np.testing.assert_array_equal(apply_threshold(hu, 400, 1000)[0, 0], [0, 0, 1, 1, 1, 0, 0])
 
 
 def test_without_an_upper_bound_the_densest_bone_counts_and_with_one_it_does_not(shell):
@@ -110,14 +110,14 @@ def test_the_smallest_part_kept_is_a_fraction_of_the_skull(shell):
 def test_a_hole_of_a_slice_is_filled_up_to_its_area(area, filled):
     mask = np.ones((3, 20, 20), bool)
     mask[1, 5:8, 5:9] = False  # 12 px
-    assert fill_holes(mask, area)[1, 5:8, 5:9].all() == filled
+    assert fill_holes(mask, max_hole_px=area)[1, 5:8, 5:9].all() == filled
 
 
 def test_max_hole_is_in_square_millimetres(shell):
     solid = shell.copy()
     solid[4:6, 20:23, 20:25] = False  # 15 px of 4 mm2 in the floor of the box
-    assert segment(ct_of(solid), max_hole=60.0).voxels[4:6, 20:23, 20:25].all()
-    assert not segment(ct_of(solid), max_hole=59.9).voxels[4:6, 20:23, 20:25].any()
+    assert segment(ct_of(solid), max_hole_mm2=60.0).voxels[4:6, 20:23, 20:25].all()
+    assert not segment(ct_of(solid), max_hole_mm2=59.9).voxels[4:6, 20:23, 20:25].any()
 
 
 def test_the_diploe_is_filled_and_the_cavity_is_not(shell):
@@ -135,19 +135,19 @@ def test_the_diploe_is_filled_and_the_cavity_is_not(shell):
 def test_a_notch_at_the_edge_of_the_image_is_not_a_hole():
     mask = np.ones((1, 10, 10), bool)
     mask[0, 0:2, 4:6] = False
-    np.testing.assert_array_equal(fill_holes(mask, 100), mask)
+    np.testing.assert_array_equal(fill_holes(mask, max_hole_px=100), mask)
 
 
 def test_a_hole_that_only_a_diagonal_closes_is_a_hole():
     mask = np.zeros((1, 5, 5), bool)
     mask[0, [1, 2, 2, 3], [2, 1, 3, 2]] = True
-    assert fill_holes(mask, 1)[0, 2, 2]
+    assert fill_holes(mask, max_hole_px=1)[0, 2, 2]
 
 
 def test_holes_are_those_of_single_slices():
     mask = np.ones((3, 9, 9), bool)
     mask[:, 4, 4] = False  # a canal through all slices is open above and below, but closed in each slice
-    assert fill_holes(mask, 1).all()
+    assert fill_holes(mask, max_hole_px=1).all()
 
 
 def test_turning_the_slices_by_90_degrees_turns_the_answer(phantom):

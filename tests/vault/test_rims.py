@@ -16,9 +16,8 @@ GAP = np.tile(np.abs(ANGLES) <= EDGE, (PLANES, 1))
 def exact_profile(outer, inner=None, missing=GAP):
     """A profile whose radii are functions of the angle, the same in every slice."""
     radii = np.tile(outer(ANGLES), (PLANES, 1))
-    return RayProfile(
-        CENTRE, ANGLES, radii - 12 if inner is None else np.tile(inner(ANGLES), (PLANES, 1)), radii, missing
-    )
+    within = radii - 12 if inner is None else np.tile(inner(ANGLES), (PLANES, 1))
+    return RayProfile(CENTRE, ANGLES, outer=radii, inner=within, missing=missing)
 
 
 def polar(points):
@@ -88,7 +87,7 @@ def test_noise_and_scattered_outliers_do_not_move_the_fit():
     profile = exact_profile(lambda a: 170 + 0 * a)
     outer = profile.outer + rng.normal(0, 0.3, profile.outer.shape)
     outer[:, ::7] += 9.0  # sutures, screws: 14 % of the rays
-    noisy_profile = RayProfile(CENTRE, ANGLES, profile.inner, outer, GAP)
+    noisy_profile = RayProfile(CENTRE, ANGLES, outer=outer, inner=profile.inner, missing=GAP)
     clean, noisy = (fit_rims(p, skip=4, reach=40, order=1) for p in (profile, noisy_profile))
     assert np.linalg.norm(noisy.points - clean.points, axis=-1).max() < 0.5
     assert degrees_between(noisy.tangents, clean.tangents).max() < 1.5
@@ -99,7 +98,7 @@ def test_a_rim_with_bone_for_fewer_than_half_of_its_points_is_unknown():
     for share, known in ((0.6, True), (0.4, False)):
         outer = profile.outer.copy()
         outer[:, ANGLES < -EDGE - (4 + share * 24) / 170] = np.nan
-        rims = fit_rims(RayProfile(CENTRE, ANGLES, profile.inner, outer, GAP), skip=4, reach=24)
+        rims = fit_rims(RayProfile(CENTRE, ANGLES, outer=outer, inner=profile.inner, missing=GAP), skip=4, reach=24)
         assert np.isfinite(rims.points[:, 0, 0]).all() == known
         assert np.isfinite(rims.points[:, 0, 1]).all() and np.isfinite(rims.points[:, 1]).all()
 

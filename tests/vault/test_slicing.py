@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cranio_nb.vault.radius_map import RadialChart
+from cranio_nb.vault.ray_grid import RadiusMap, RayGrid
 from cranio_nb.vault.slicing import axial_frames, fans, picture, profile
 from cranio_nb.volume import Volume
 
@@ -25,7 +25,7 @@ def vault():
     v, u = (np.mgrid[:N, :N] - (N - 1) / 2) * STEP
     hole = (u / WIDE) ** 2 + (v / LONG) ** 2 < 1
     outer = np.where(hole, np.nan, 80 + 5 * u)
-    return RadialChart(EYE, turned(), STEP, outer, outer - 8, hole)
+    return RadiusMap(RayGrid(EYE, turned(), STEP, N), outer=outer, inner=outer - 8, hole=hole)
 
 
 @pytest.mark.parametrize("n", [1, 2, 6])
@@ -34,7 +34,7 @@ def test_every_ray_of_every_fan_is_found_again(vault, n):
     assert len(made) == n
     for fan in made:
         np.testing.assert_allclose(fan.axes @ fan.axes.T, np.eye(3), atol=1e-12)
-        assert np.linalg.det(fan.axes) == pytest.approx(np.linalg.det(vault.axes))
+        assert np.linalg.det(fan.axes) == pytest.approx(np.linalg.det(vault.grid.axes))
         np.testing.assert_allclose(np.linalg.norm(fan.directions, axis=-1), 1, atol=1e-12)
         slice_, ray = np.indices(fan.directions.shape[:2])
         np.testing.assert_allclose(fan.locate(fan.directions), [slice_, ray], atol=1e-6)
@@ -67,7 +67,7 @@ def test_slices_are_a_millimetre_apart_and_cover_the_hole(vault):
     for fan in fans(vault, 4):
         radius = np.nanmedian(vault.outer)
         np.testing.assert_allclose(np.diff(fan.tilts) * radius, 1.0)
-        slice_, ray = fan.locate(vault.directions[vault.hole])
+        slice_, ray = fan.locate(vault.grid.directions[vault.hole])
         assert slice_.min() >= 1 and slice_.max() <= len(fan.tilts) - 1
         beside = np.minimum(ray.min(), len(fan.angles) - 1 - ray.max()) * np.diff(fan.angles)[0]
         assert beside >= 0.7  # radians of bone to fit on
@@ -76,7 +76,7 @@ def test_slices_are_a_millimetre_apart_and_cover_the_hole(vault):
 def test_a_profile_reads_the_vaults_radii(vault):
     fan = fans(vault, 6)[2]
     seen = profile(vault, fan)
-    v, u = (vault.locate(fan.directions) - (N - 1) / 2) * STEP
+    v, u = (vault.grid.locate(fan.directions) - (N - 1) / 2) * STEP
     known = np.isfinite(seen.outer)
     assert known.mean() > 0.5
     np.testing.assert_allclose(seen.outer[known], (80 + 5 * u)[known], atol=1e-3)

@@ -30,9 +30,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ...geometry import voxel_pieces
 from ...opening import Opening
-from ...stages import prosthesis_volume
-from ...vault import radius_map
+from ...vault import radius_measurement, radius_voxels
+from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
 from ..piece import Piece
 from . import sheet, sheet_motion
@@ -50,7 +51,7 @@ class Sheets:
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
         The bone around the hole.
     outer, inner : Sheet
         At rest, in mm along the chart's axes from its eye.
@@ -62,7 +63,7 @@ class Sheets:
         Whether each came to rest.
     """
 
-    vault: radius_map.RadialChart
+    vault: RadiusMap
     outer: Sheet
     inner: Sheet
     settings: tuple[Setting, Setting]
@@ -108,15 +109,22 @@ def pieces(
     dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
     plate = {"wavelength_mm": wavelength_mm, "tension_mm2": tension_mm2, "span_mm": span_mm}
     for opening in openings:
-        made = fit(radius_map.look(bone, opening), **plate, dynamics=dynamics, tol_mm=tol_mm, max_iter=max_iter)
+        made = fit(
+            radius_measurement.measure_around(bone, opening),
+            **plate,
+            dynamics=dynamics,
+            tol_mm=tol_mm,
+            max_iter=max_iter,
+        )
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
-        between = radius_map.voxelise(made.vault, *radius_map.thickened(made.vault, *radii), bone)
-        voxels = prosthesis_volume.main_piece(between, opening.sheet.voxels)
+        outer, inner = radius_voxels.thickened(made.vault, outer=radii[0], inner=radii[1])
+        between = radius_voxels.voxels_between(made.vault, bone, outer=outer, inner=inner)
+        voxels = voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
         yield Piece(voxels, (made,), {"sheets": _entries(made)})
 
 
 def fit(
-    vault: radius_map.RadialChart,
+    vault: RadiusMap,
     *,
     wavelength_mm: float,
     tension_mm2: float,
@@ -129,7 +137,7 @@ def fit(
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
     wavelength_mm, tension_mm2, span_mm, tol_mm, max_iter
         As for `pieces`.
     dynamics : Dynamics, optional
@@ -139,8 +147,8 @@ def fit(
     -------
     Sheets
     """
-    spans = (max(round((len(vault.outer) - 1) * vault.mm / span_mm), 4),) * 2
-    size = (len(vault.outer) - 1) * vault.mm / spans[0]
+    spans = (max(round((len(vault.outer) - 1) * vault.step_mm / span_mm), 4),) * 2
+    size = (len(vault.outer) - 1) * vault.step_mm / spans[0]
     material = Material.plate(tension_mm2, (wavelength_mm / (2 * np.pi)) ** 4, (size, size))
     rests, settings = [], []
     for radius in (vault.outer, vault.inner):
@@ -159,12 +167,12 @@ def fit(
     return Sheets(vault, outer.sheet, inner.sheet, (settings[0], settings[1]), counts, ends)
 
 
-def springs_to(vault: radius_map.RadialChart, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
+def springs_to(vault: RadiusMap, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
     """A spring to one surface of the bone for every ray beside the hole that meets it, of unit strength per mm2.
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
     radius : ndarray, shape (M, M)
         The vault's outer or inner radii.
     spans : tuple of int
@@ -176,19 +184,19 @@ def springs_to(vault: radius_map.RadialChart, radius: NDArray[np.float64], spans
         To points in mm along the map's axes from the head's centre.
     """
     known = np.isfinite(radius) & ~vault.hole
-    points = (vault.directions[known] * radius[known][:, None]) @ vault.axes.T
+    points = (vault.grid.directions[known] * radius[known][:, None]) @ vault.grid.axes.T
     v, u = (i * n / (len(radius) - 1) for i, n in zip(np.nonzero(known), spans, strict=True))
-    return Springs(points, v, u, np.full(len(points), vault.mm**2))
+    return Springs(points, v, u, np.full(len(points), vault.step_mm**2))
 
 
-def radii_of(one: Sheet, vault: radius_map.RadialChart) -> NDArray[np.float64]:
+def radii_of(one: Sheet, vault: RadiusMap) -> NDArray[np.float64]:
     """Radius of a sheet along every ray into the hole or near it, shape (M, M), mm; nan elsewhere.
 
     Parameters
     ----------
     one : Sheet
         In mm along the chart's axes from its eye.
-    vault : RadialChart
+    vault : RadiusMap
 
     Returns
     -------
@@ -201,13 +209,13 @@ def radii_of(one: Sheet, vault: radius_map.RadialChart) -> NDArray[np.float64]:
     at = wanted
     for _ in range(_FIND_STEPS):
         points = one.at(*(at * scale).T)
-        at = np.clip(at + wanted - vault.locate(points @ vault.axes).T, 0, len(vault.outer) - 1)
+        at = np.clip(at + wanted - vault.grid.locate(points @ vault.grid.axes).T, 0, len(vault.outer) - 1)
     radius = np.full(vault.hole.shape, np.nan)
     radius[near] = np.linalg.norm(one.at(*(at * scale).T), axis=1)
     return radius
 
 
-def _sphere(points: NDArray[np.float64], vault: radius_map.RadialChart, spans: tuple[int, int]) -> Sheet:
+def _sphere(points: NDArray[np.float64], vault: RadiusMap, spans: tuple[int, int]) -> Sheet:
     """The sheet on the sphere that best fits points around the hole, each ray at its own place."""
     system = np.column_stack([2 * points, np.ones(len(points))])
     squares, weight = (points**2).sum(axis=1), np.ones(len(points))
@@ -216,7 +224,7 @@ def _sphere(points: NDArray[np.float64], vault: radius_map.RadialChart, spans: t
         radius = np.sqrt(x[3] + x[:3] @ x[:3])
         off = np.abs(np.linalg.norm(points - x[:3], axis=1) - radius)
         weight = 1 / (1 + (off / (3 * np.median(off) + 1e-6)) ** 2)
-    along = vault.directions @ vault.axes.T
+    along = vault.grid.directions @ vault.grid.axes.T
     middle = along @ x[:3]
     away = middle + np.sqrt(np.maximum(middle**2 + x[3], 0.0))
     v, u = np.indices(away.shape).reshape(2, -1) * np.array(spans)[:, None] / (len(away) - 1)
@@ -224,7 +232,7 @@ def _sphere(points: NDArray[np.float64], vault: radius_map.RadialChart, spans: t
     return sheet.settle(springs, sheet.flat(spans), Material((0.0, 0.0, 1e-6, 1e-6, 1e-6)))[0]
 
 
-def _inside(vault: radius_map.RadialChart, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+def _inside(vault: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
     """A radius map with nan outside the hole."""
     return np.where(vault.hole, radius, np.nan)
 

@@ -35,7 +35,7 @@ def bridge(
         Bool mask of the skull.
     opening : Opening
     skip_px, reach_px : float
-        As for `feature_extraction.gap_ends`.
+        As for `feature_extraction.find_gap_ends`.
     settings : Settings
         In px.
 
@@ -66,7 +66,7 @@ def by_skeleton(
     bone, opening : ndarray of bool, shape (P, R, C)
         Slices of the skull, and where the opening crosses them.
     skip_px, reach_px : float
-        As for `feature_extraction.gap_ends`.
+        As for `feature_extraction.find_gap_ends`.
 
     Returns
     -------
@@ -76,11 +76,11 @@ def by_skeleton(
     results = []
     for plane in range(len(bone)):
         try:
-            features = feature_extraction.slice_features(bone[plane])
+            features = feature_extraction.extract_features(bone[plane])
             if features.closed:
                 results.append(SliceResult(plane, "hull", "closed ring"))
                 continue
-            ends = feature_extraction.gap_ends(features, opening[plane], skip=skip_px, reach=reach_px)
+            ends = feature_extraction.find_gap_ends(features, opening[plane], skip_px=skip_px, reach_px=reach_px)
             results.append(SliceResult(plane, "balloon", ends=ends))
         except feature_extraction.SliceProblem as problem:
             results.append(SliceResult(plane, "skipped", problem.message))
@@ -120,7 +120,9 @@ def _filled(
     near = ndimage.binary_dilation(opening.any(axis=0), iterations=int(np.ceil(_NEAR / px)))
     for s in results:
         if s.status == "hull":
-            voxels[s.plane] = prosthesis_volume.partial_loss(bone[s.plane], min_area=_ISLAND / px**2, region=near)
+            voxels[s.plane] = prosthesis_volume.fill_partial_loss(
+                bone[s.plane], min_area_px=_ISLAND / px**2, region=near
+            )
         elif s.curves.size:
-            voxels[s.plane] = prosthesis_volume.patch(s.curves[0], s.curves[1], bone[s.plane])
+            voxels[s.plane] = prosthesis_volume.fill_gap(s.curves[0], s.curves[1], bone[s.plane])
     return voxels

@@ -13,7 +13,7 @@ from scipy import ndimage
 
 from ...curves import GapEnds
 from ...opening import Opening
-from ...vault import radius_map, slicing
+from ...vault import radius_measurement, radius_voxels, slicing
 from ...vault.rims import RayProfile, fit_rims, share_tangents
 from ...volume import Volume
 from . import inflate
@@ -53,15 +53,15 @@ def bridge(
         One for each direction.
     voxels : ndarray of bool, shape (P, R, C)
     """
-    vault = radius_map.look(bone, opening)
+    vault = radius_measurement.measure_around(bone, opening)
     made, radii, weights = [], [], []
     for fan in slicing.fans(vault, directions):
         # curves of this direction, and their radii and weights on the map's own rays
         profile = slicing.profile(vault, fan)
         ends = by_rays(profile, skip_mm=skip_mm, reach_mm=reach_mm, coupling_mm=coupling_mm)
         results = inflate.carry(inflate.inflate(ends, np.zeros(2), settings))
-        made.append(SlicedDesign(opening, fan.frames(vault.eye), 1.0, results))
-        at = fan.locate(vault.directions[vault.hole])
+        made.append(SlicedDesign(opening, fan.frames(vault.grid.centre), 1.0, results))
+        at = fan.locate(vault.grid.directions[vault.hole])
         both = [_on_rays(results, boundary, profile) for boundary in (0, 1)]
         radii.append([ndimage.map_coordinates(r, at, order=1, cval=np.nan) for r, _ in both])
         weights.append([ndimage.map_coordinates(w, at, order=1, cval=0.0) for _, w in both])
@@ -70,7 +70,8 @@ def bridge(
     outer[vault.hole], inner[vault.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return tuple(made), np.zeros(bone.shape, bool)
-    return tuple(made), radius_map.voxelise(vault, *radius_map.thickened(vault, outer, inner), bone)
+    outer, inner = radius_voxels.thickened(vault, outer=outer, inner=inner)
+    return tuple(made), radius_voxels.voxels_between(vault, bone, outer=outer, inner=inner)
 
 
 def by_rays(profile: RayProfile, *, skip_mm: float, reach_mm: float, coupling_mm: float) -> list[SliceResult]:

@@ -13,8 +13,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+from ...geometry import voxel_pieces
 from ...opening import Opening
-from ...stages import deformable_model, prosthesis_volume
+from ...stages import deformable_model
 from ...volume import Volume
 from ..piece import Piece
 from . import axial as axial_slices
@@ -123,4 +124,4 @@ def pieces(
                 settings=settings,
             )
         slices = [{"direction": i, **s.record()} for i, sliced in enumerate(made) for s in sliced.slices]
-        yield Piece(prosthesis_volume.main_piece(voxels, opening.sheet.voxels), made, {"slices": slices})
+        yield Piece(voxel_pieces.keep_main_piece(voxels, opening.sheet.voxels), made, {"slices": slices})

@@ -29,10 +29,11 @@ from scipy.spatial import cKDTree
 from skimage.measure import find_contours
 
 from ...errors import InputRefused
+from ...geometry import voxel_pieces
 from ...mesh import Mesh
 from ...opening import Opening
-from ...stages import prosthesis_volume
-from ...vault import radius_map
+from ...vault import radius_measurement
+from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
 from ..piece import Piece
 from . import membrane, mesh_to_voxels, tetrahedra
@@ -95,7 +96,7 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, n_guides: int = 12) -> 
     InputRefused
         ``TooFewGuides``; ``TangledRim`` when the rim of a hole crosses itself.
     """
-    guides = [find_guides(radius_map.look(bone, opening), n_guides) for opening in openings]
+    guides = [find_guides(radius_measurement.measure_around(bone, opening), n_guides) for opening in openings]
     yield from between_guides(bone, openings, guides)
 
 
@@ -122,12 +123,12 @@ def between_guides(bone: Volume, openings: Sequence[Opening], guides: Sequence[N
         yield Piece(voxels, (filling,), {"fills": [_entry(side) for side in (filling.outer, filling.inner)]})
 
 
-def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.float64]:
+def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     """Points on the outer surface at even steps around a hole.
 
     Parameters
     ----------
-    vault : RadialChart
+    vault : RadiusMap
         The bone around the hole.
     n_guides : int
 
@@ -144,7 +145,7 @@ def find_guides(vault: radius_map.RadialChart, n_guides: int) -> NDArray[np.floa
     v, u = (np.rint(np.interp(at, along, c)).astype(int) for c in closed.T)
     unknown = vault.hole | ~np.isfinite(vault.outer)
     v, u = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)[:, v, u]
-    return vault.eye + vault.directions[v, u] * vault.outer[v, u, None]
+    return vault.grid.centre + vault.grid.directions[v, u] * vault.outer[v, u, None]
 
 
 def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) -> Filling:
@@ -200,7 +201,7 @@ def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop,
 
 def _solid(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
     """Voxels inside the solid and off the bone, in one piece, without the slivers where a fill grazes the bone."""
-    return prosthesis_volume.main_piece(
+    return voxel_pieces.keep_main_piece(
         ndimage.binary_opening(mesh_to_voxels.inside(closed, bone) & ~bone.voxels), opening
     )
 

@@ -9,7 +9,7 @@ from cranio_nb.methods.dnurbs import method as dnurbs
 from cranio_nb.methods.dnurbs.method import sheet, sheet_motion
 from cranio_nb.methods.dnurbs.sheet import Material, Sheet, Springs
 from cranio_nb.methods.dnurbs.sheet_motion import Dynamics, Setting
-from cranio_nb.vault import radius_map
+from cranio_nb.vault.ray_grid import RadiusMap, RayGrid
 
 SPANS = (5, 4)
 SHAPE = (8, 7)
@@ -223,13 +223,13 @@ def test_a_sheet_on_a_sphere_needs_no_springs_near_the_hole_to_stay_on_it():
     """The natural shape: the middle of a wide hole in a sphere about another point than the eye."""
     n, step = 121, np.radians(1.0)
     blank = np.full((n, n), np.nan)
-    vault = radius_map.RadialChart(np.zeros(3), np.eye(3), step, blank, blank, np.zeros((n, n), bool))
+    vault = RadiusMap(RayGrid(np.zeros(3), np.eye(3), step, n), outer=blank, inner=blank, hole=np.zeros((n, n), bool))
     middle, radius = np.array([4.0, -3.0, 6.0]), 80.0
-    along = vault.directions @ middle
+    along = vault.grid.directions @ middle
     outer = along + np.sqrt(along**2 + radius**2 - middle @ middle)
     away = np.hypot(*(np.indices((n, n)) - 60))
     hole = away < 35
-    vault = radius_map.RadialChart(np.zeros(3), np.eye(3), step, outer, outer - 6, hole)
+    vault = RadiusMap(RayGrid(np.zeros(3), np.eye(3), step, n), outer=outer, inner=outer - 6, hole=hole)
     made = dnurbs.fit(vault, wavelength_mm=20.0, tension_mm2=0.0, span_mm=8.0)
     error = dnurbs.radii_of(made.outer, vault)[hole] - outer[hole]
     assert np.abs(error).max() < 0.02

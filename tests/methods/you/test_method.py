@@ -13,7 +13,7 @@ from cranio_nb.methods.design import assemble, design
 from cranio_nb.methods.you import method as you
 from cranio_nb.methods.you.method import membrane
 from cranio_nb.opening import Opening
-from cranio_nb.vault import radius_map
+from cranio_nb.vault import radius_measurement
 from cranio_nb.volume import Volume
 
 UP = np.array([0.0, 0.0, 1.0])
@@ -141,7 +141,7 @@ def test_guides_in_either_sense_give_the_same_rim(dome, filling):
 
 def test_picked_guides_make_a_prosthesis(skull, openings, phantom):
     bone, found = skull("round"), openings("round")
-    guides = [you.find_guides(radius_map.look(bone, one), 9) for one in found]
+    guides = [you.find_guides(radius_measurement.measure_around(bone, one), 9) for one in found]
     made = assemble(bone, found, you.between_guides(bone, found, guides), method="you", parameters={"smooth": True})
     json.dumps(made.record, allow_nan=False)
     same = design(bone, found, n_guides=9, method="you")

@@ -1,0 +1,136 @@
+"""The vault around an opening, measured along rays: bone mask and opening come in -> a radius map goes out.
+
+Frames: map (v, u) about the opening's direction, see `ray_grid`; radii in mm; the world in mm (LPS).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from ..geometry.robust import huber_weights, reweighted_fit, spread
+from ..opening import Opening
+from ..volume import Volume, inside_grid
+from .ray_casting import expected_radius, surface_radii
+from .ray_grid import RadiusMap, RayGrid
+
+_STEP_DEG = 0.5  # between rays: 0.65 mm on the vault
+_BESIDE_DEG = 42.0  # of vault measured beside the hole
+_LARGEST_DEG = 115.0  # from the map's middle: further out the map tears
+_SOUND = 0.85  # of the usual thickness: bone below it is a bevelled or worn rim
+_RIM_MM = 6.0  # beside a hole up to which bone may be its rim
+_AROUND_MM = 20.0  # of bone beside the rim that tells what is usual
+
+
+def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
+    """Measure the vault around an opening along rays from inside the head.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask.
+    opening : Opening
+
+    Returns
+    -------
+    RadiusMap
+        Centred on the opening, reaching about 55 mm beyond it. Its hole is the opening with its bevelled or worn rim.
+    """
+    # a grid that reaches beyond the opening on all sides
+    axes = _axes(opening, bone)
+    points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)) - opening.head_centre
+    widest = np.degrees(np.arccos(np.clip(points @ axes[2] / np.linalg.norm(points, axis=1), -1, 1))).max()
+    half = int(min(widest + _BESIDE_DEG, _LARGEST_DEG) / _STEP_DEG)
+    grid = RayGrid(opening.head_centre, axes, np.radians(_STEP_DEG), 2 * half + 1)
+    # the radii beside it, and where bone is missing
+    hole = _rays_to(grid, points)
+    typical = float(np.median(np.linalg.norm(points, axis=1)))
+    outer, inner = _radii(bone, grid, hole, typical=typical, hidden=hole)
+    step_mm = float(np.nanmedian(outer) * grid.step_rad)
+    return RadiusMap(grid, outer=outer, inner=inner, hole=_missing(outer - inner, hole, step_mm))
+
+
+def measure_along(radius_map: RadiusMap, bone: Volume, *, min_width_mm: float = 4.0) -> RadiusMap:
+    """Measure another skull, or the same one elsewhere, along the rays of a map.
+
+    Parameters
+    ----------
+    radius_map : RadiusMap
+        Of an opening in the first skull.
+    bone : Volume
+        Bool mask of the other skull.
+    min_width_mm : float
+        Narrower places without bone are its pinholes.
+
+    Returns
+    -------
+    RadiusMap
+        The same rays with the other skull's radii; its `hole` is where that skull lacks bone.
+    """
+    grid, typical = radius_map.grid, float(np.nanmedian(radius_map.outer))
+    hidden = np.zeros_like(radius_map.hole)
+    outer, inner = _radii(bone, grid, radius_map.hole, typical=typical, hidden=hidden)
+    lacking = ndimage.binary_opening(np.isnan(outer), iterations=max(1, round(min_width_mm / 2 / radius_map.step_mm)))
+    if lacking.any():
+        lacking = _missing(outer - inner, lacking, float(np.nanmedian(outer) * grid.step_rad))
+    return RadiusMap(grid, outer=outer, inner=inner, hole=lacking)
+
+
+def _axes(opening: Opening, bone: Volume) -> NDArray[np.float64]:
+    """Axes of the map: the middle points to the opening, v runs along its long side, u across it."""
+    middle = opening.direction
+    points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)[::7])
+    flat = points - points.mean(axis=0)
+    flat = flat - np.outer(flat @ middle, middle)
+    long_side = np.linalg.svd(flat, full_matrices=False)[2][0]
+    long_side = long_side * (1.0 if long_side @ bone.edges[0] >= 0 else -1.0)
+    return np.stack([np.cross(long_side, middle), long_side, middle])
+
+
+def _rays_to(grid: RayGrid, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """The rays that pass through an opening's sheet, given by points (n, 3) from the grid's centre."""
+    at = grid.locate(points).T
+    v, u = np.rint(at[inside_grid(at, (grid.n, grid.n))]).astype(np.intp).T
+    rays = np.zeros((grid.n, grid.n), bool)
+    rays[v, u] = True
+    return ndimage.binary_closing(rays, iterations=2)
+
+
+def _radii(
+    bone: Volume, grid: RayGrid, middle: NDArray[np.bool_], *, typical: float, hidden: NDArray[np.bool_]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Outer and inner radius along the rays, looked for best near the rays in `middle`."""
+    degrees = ndimage.distance_transform_edt(~middle) * _STEP_DEG
+    directions = grid.directions
+    expected = expected_radius(bone, grid.centre, directions, typical=typical, degrees=degrees, hidden=hidden)
+    return surface_radii(bone, grid.centre, directions, expected)
+
+
+def _missing(thickness: NDArray[np.float64], opening: NDArray[np.bool_], step_mm: float) -> NDArray[np.bool_]:
+    """The hole: rays of an opening without bone, and the bevelled or worn rim beside them."""
+    # no bone at all, but for the sutures beside it
+    free = np.isnan(thickness)
+    hole = free & ndimage.binary_dilation(opening, iterations=3)
+    # a rim thinner than the sound bone around it
+    away = ndimage.distance_transform_edt(~hole) * step_mm
+    usual = _usual_thickness(thickness, (away > _RIM_MM) & (away < _RIM_MM + _AROUND_MM) & ~free)
+    with np.errstate(invalid="ignore"):
+        thin = (thickness < _SOUND * usual) & (away <= _RIM_MM)
+    # what of that hangs together with the hole
+    labels, _ = ndimage.label(hole | thin)
+    kept = np.unique(labels[hole])
+    return ndimage.binary_opening(np.isin(labels, kept[kept > 0]), iterations=2) | hole
+
+
+def _usual_thickness(thickness: NDArray[np.float64], around: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Plane through the thickness of the sound bone around the hole, continued across it, shape (M, M), mm."""
+    v, u = np.nonzero(around)
+    if len(v) < 10:
+        return np.full(thickness.shape, np.nanmedian(thickness))
+    basis = np.stack([np.ones(len(v)), v, u], axis=1)
+    plane = reweighted_fit(
+        basis, thickness[v, u], lambda off: huber_weights(off, spread(off) + 1e-6), start=np.ones(len(v)), n_iter=5
+    )
+    rows, cols = np.ogrid[: thickness.shape[0], : thickness.shape[1]]
+    return plane[0] + plane[1] * rows + plane[2] * cols
