@@ -57,7 +57,8 @@ def _touches_bone(mesh: Mesh, bone: Volume) -> NDArray[np.bool_]:
     step /= np.abs(step).max(axis=1, keepdims=True).clip(1e-12)
     touches = np.zeros(len(mesh.faces), bool)
     for reach in (0.5, 1.0, 1.5):
-        index = np.rint(bone.to_voxel(mesh.centres) + reach * step).astype(int)
+        # rounded first, so that a half falls to the same voxel in every header
+        index = np.rint(np.round(bone.to_voxel(mesh.centres) + reach * step, 6)).astype(int)
         known = ((index >= 0) & (index < bone.shape)).all(axis=1)
         touches[known] |= bone.voxels[tuple(index[known].T)].astype(bool)
     return touches
