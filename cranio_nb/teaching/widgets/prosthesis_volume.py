@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,14 +17,17 @@ from ...drawing.canvas_axes import Chart
 from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
 from ...drawing.pixels import Window, plain, tinted
 from ...methods.design import design
-from ...methods.slicewise import SliceResult
 from ...opening import Opening
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
 from .panel import Panel
 from .parts import SIDE, annotate_slice
 
+if TYPE_CHECKING:
+    from ...methods.slicewise.slices import SliceResult
+
 PRESSURES = ("from the end tangents", "the paper's constant k")
+_REACH_PX = 10  # the paper does not say over what length it fits a tangent; fewer points make a poor line
 _WORDS = {
     "balloon": ("bridged by its own balloons", SKY),
     "hull": ("partial loss: hull minus bone", GREEN),
@@ -103,7 +107,7 @@ def patch(bone: Volume, opening: Opening) -> Panel:
 
 
 def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
-    """Curves and patches of all slices of an opening, axial as in the paper.
+    """Curves and patches of all slices of an opening, axial as in the paper, tangents fitted to ten points.
 
     Parameters
     ----------
@@ -117,8 +121,10 @@ def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
     -------
     Stack
     """
-    own = {"pressure": None} if pressure == PRESSURES[0] else {}
-    made = design(bone, [opening], method="slicewise", preset="paper", **own)
+    options: dict[str, Any] = {"reach_mm": _REACH_PX * float(bone.spacing[1:].mean())}
+    if pressure == PRESSURES[0]:
+        options["pressure_mm"] = None
+    made = design(bone, [opening], method="slicewise", preset="paper", **options)
     (sliced,) = made.working
     assert made.patch is not None
     first = round(float(bone.to_voxel(sliced.frames[0, 0])[0]))

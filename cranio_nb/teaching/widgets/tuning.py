@@ -85,7 +85,7 @@ def tuner(case: Case) -> Tuner:
     Returns
     -------
     Tuner
-        Its controls are those options and ``own``: whether ``pressure`` is set by hand.
+        Its controls are those options and ``own``: whether ``pressure_mm`` is set by hand.
     """
     bone, truth = Volume(case.bone, case.affine), Volume(case.implant, case.affine)
     openings = opening_search.find_openings(bone)
@@ -93,11 +93,11 @@ def tuner(case: Case) -> Tuner:
     controls = (
         Choice("slices", "slices", SLICES, SLICES[1]),
         Slider("directions", "directions of the fans", 1, 8, 6),
-        Slider("skip", "skip: left out at the cut (mm)", 0, 15, 1.5, 0.5),
-        Slider("reach", "reach: fitted after that (mm)", 4, 30, 10, 0.5),
-        Slider("coupling", "tangents shared over (mm)", 0, 10, 4, 0.5),
+        Slider("skip_mm", "skip: left out at the cut (mm)", 0, 15, 1.5, 0.5),
+        Slider("reach_mm", "reach: fitted after that (mm)", 4, 30, 10, 0.5),
+        Slider("coupling_mm", "tangents shared over (mm)", 0, 10, 4, 0.5),
         Switch("own", "set k by hand (else from the end tangents)", False),
-        Slider("pressure", "k: pressure (per index\N{SUPERSCRIPT TWO})", -0.1, 1.0, 0.062, 0.002),
+        Slider("pressure_mm", "k: pressure (mm per index\N{SUPERSCRIPT TWO})", -0.1, 1.0, 0.062, 0.002),
         Slider("n_snaxels", "snaxels, N + 1", 11, 81, 41, 2),
         Slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1, 5, 1, 0.1),
         Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, 5, 1, 0.1),
@@ -120,11 +120,11 @@ def tuner(case: Case) -> Tuner:
 def options_of(
     slices: str,
     directions: int,
-    skip: float,
-    reach: float,
-    coupling: float,
+    skip_mm: float,
+    reach_mm: float,
+    coupling_mm: float,
     own: bool,
-    pressure: float,
+    pressure_mm: float,
     n_snaxels: int,
     tension: float,
     rigidity: float,
@@ -137,8 +137,8 @@ def options_of(
     slices : str
         One of `SLICES`.
     own : bool
-        Whether `pressure` is heeded; else it follows from the end tangents.
-    directions, skip, reach, coupling, pressure, n_snaxels, tension, rigidity, smooth
+        Whether `pressure_mm` is heeded; else it follows from the end tangents.
+    directions, skip_mm, reach_mm, coupling_mm, pressure_mm, n_snaxels, tension, rigidity, smooth
         As for the method.
 
     Returns
@@ -148,10 +148,10 @@ def options_of(
     return {
         "axial": slices == SLICES[0],
         "directions": directions,
-        "skip": skip,
-        "reach": reach,
-        "coupling": coupling,
-        "pressure": pressure if own else None,
+        "skip_mm": skip_mm,
+        "reach_mm": reach_mm,
+        "coupling_mm": coupling_mm,
+        "pressure_mm": pressure_mm if own else None,
         "n_snaxels": n_snaxels,
         "tension": tension,
         "rigidity": rigidity,
@@ -199,8 +199,8 @@ def _view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
     canvas.text(left + 80, 86 + 40 * len(_MEASURES), worse, size=12, colour=_WORSE)
     dice, _, hd95, *_ = now[0]
     line = f"DSC {dice:.3f}, HD95 {hd95:.2f} mm, outer side {now[0][4]:.2f} mm and inner side {now[0][5]:.2f} mm off."
-    off = ("directions", "coupling") if values["slices"] == SLICES[0] else ()
-    return View(canvas.array(), line, off=off if values["own"] else (*off, "pressure"))
+    off = ("directions", "coupling_mm") if values["slices"] == SLICES[0] else ()
+    return View(canvas.array(), line, off=off if values["own"] else (*off, "pressure_mm"))
 
 
 def _verdict(value: float, before: float, more: bool | None, digits: int) -> tuple[str, str]:

@@ -9,10 +9,10 @@ from cranio_nb.teaching.widgets import tuning
 
 
 def test_the_tuner_hands_its_parameters_to_the_design_command(static, phantom, tmp_path):
-    panel = widgets.tuner(phantom()).set(slices=tuning.SLICES[0], reach=20.0, own=True, pressure=0.5)
+    panel = widgets.tuner(phantom()).set(slices=tuning.SLICES[0], reach_mm=20.0, own=True, pressure_mm=0.5)
     check_options("slicewise", panel.parameters)
     assert json.loads(panel.save(tmp_path / "p.json").read_text()) == panel.parameters
-    assert panel.parameters["axial"] and panel.parameters["pressure"] == 0.5
+    assert panel.parameters["axial"] and panel.parameters["pressure_mm"] == 0.5
     case = phantom()
     bone = cn.Volume(case.bone, case.affine)
     made = cn.design(bone, **panel.parameters)

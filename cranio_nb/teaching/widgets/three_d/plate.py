@@ -72,9 +72,9 @@ def _bend(scene: Scene, *, second_mm: float, third_mm: float, mirror_mm: float) 
         vault.hole,
         vault.step_mm,
         like=scene.mirrored,
-        second=second_mm,
-        third=third_mm,
-        likeness=mirror_mm,
+        second_mm=second_mm,
+        third_mm=third_mm,
+        mirror_mm=mirror_mm,
     )
 
 

@@ -97,7 +97,7 @@ def relax_sheet(vault: RadiusMap, *, wavelength_mm: float, mass: float, damping:
     -------
     Way
     """
-    setting = dnurbs.fit(vault, wavelength=wavelength_mm, tension=0.0, span=_SPAN).settings[0]
+    setting = dnurbs.fit(vault, wavelength_mm=wavelength_mm, tension_mm2=0.0, span_mm=_SPAN).settings[0]
     dynamics = Dynamics(mass=mass, damping=damping)
     deep = replace(setting.natural, control=setting.natural.control * _DEEP)
     motions = [sheet_motion.start(deep, setting, dynamics)]
