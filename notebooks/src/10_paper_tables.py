@@ -49,10 +49,7 @@ case = classroom.load("class", needs_truth=True)
 bone, px = cn.segment(case.ct), case.px
 openings = cn.find_openings(bone)
 first = max(openings[0].planes[0] - 2, 0)  # plane of the first slice: two below the hole
-preset = {
-    "preset": "paper",
-    "reach_mm": 10 * px,
-}  # the paper does not say over what length it fits
+preset = {"preset": "paper"}
 paper = cn.design(bone, openings, **preset)
 ours = cn.design(bone, openings)
 

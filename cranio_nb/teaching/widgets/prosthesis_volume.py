@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from ...methods.slicewise.slices import SliceResult
 
 PRESSURES = ("from the end tangents", "the paper's constant k")
-_REACH_PX = 10  # the paper does not say over what length it fits a tangent; fewer points make a poor line
 _WORDS = {
     "balloon": ("bridged by its own balloons", SKY),
     "hull": ("partial loss: hull minus bone", GREEN),
@@ -107,7 +106,7 @@ def patch(bone: Volume, opening: Opening) -> Panel:
 
 
 def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
-    """Curves and patches of all slices of an opening, axial as in the paper, tangents fitted to ten points.
+    """Curves and patches of all slices of an opening, axial as in the paper.
 
     Parameters
     ----------
@@ -121,9 +120,7 @@ def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
     -------
     Stack
     """
-    options: dict[str, Any] = {"reach_mm": _REACH_PX * float(bone.spacing[1:].mean())}
-    if pressure == PRESSURES[0]:
-        options["pressure_mm"] = None
+    options: dict[str, Any] = {"pressure_mm": None} if pressure == PRESSURES[0] else {}
     made = design(bone, [opening], method="slicewise", preset="paper", **options)
     (sliced,) = made.working
     assert made.patch is not None
