@@ -63,7 +63,7 @@ _HOMES = {
     "check_mesh": "geometry.mesh_check",
     "score": "evaluation.scores",
     "run_design": "pipeline.run",
-    "prepare": "pipeline.run",
+    "prepare": "pipeline.preparation",
     "compare": "pipeline.compare",
     "show": "drawing.scene3d",
     "save": "output.design_folder",

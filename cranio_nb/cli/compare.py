@@ -52,7 +52,7 @@ def compare(
     from ..output.comparison_folder import FILES, write_comparison
     from ..output.staging import check_folder, staged
     from ..pipeline.compare import compare as run_all
-    from ..pipeline.run import prepare
+    from ..pipeline.preparation import prepare
     from ..pipeline.trial import contenders
     from .console import progress_bar
 
@@ -77,7 +77,7 @@ def compare(
 
 def _print(found: Comparison, out: Path | None) -> None:
     """Print the tables, the sentences of those that refused, and where the page is."""
-    from ..output.comparison_folder import tables
+    from ..output.comparison_tables import tables
     from ..pipeline.compare import MEASURES
     from .console import print_table
 

@@ -81,7 +81,7 @@ def draw_parts(parts: Sequence[Part], towards: NDArray[np.float64], *, unit: str
     --------
     >>> square = Mesh(np.array([[0.0, 0, 0], [9, 0, 0], [0, 0, 9], [9, 0, 9]]), np.array([[0, 1, 2], [1, 3, 2]]))
     >>> draw_parts([Part(square, "#0072B2", "square", None)], np.array([0.0, -1.0, 0.0])).shape
-    (530, 640, 3)
+    (529, 640, 3)
     """
     # the surfaces, as large as just fits
     top, px_mm = top_of_scale(parts), _pixel_mm(parts, towards)

@@ -122,9 +122,9 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, s
     Examples
     --------
     >>> square = Mesh(np.array([[0.0, 0, 0], [10, 0, 0], [0, 0, 10], [10, 0, 10]]), np.array([[0, 1, 2], [1, 3, 2]]))
-    >>> picture = render([Solid(square, np.array([1.0, 0, 0]))], (0, -1, 0), px_mm=1.0)
-    >>> picture.rgb.shape, picture.rgb[0, 0].tolist()
-    ((12, 12, 3), [1.0, 1.0, 1.0])
+    >>> picture = render([Solid(square, np.array([1.0, 0, 0]))], (0, -1, 0), px_mm=1.0, shaded=False)
+    >>> picture.rgb.shape, picture.rgb[0, 0].tolist(), picture.rgb[6, 6].tolist()
+    ((12, 12, 3), [1.0, 1.0, 1.0], [1.0, 0.0, 0.0])
     """
     # all solids in the frame of the view: right, down, towards the viewer
     axes = view_axes(towards)

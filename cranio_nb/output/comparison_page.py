@@ -18,7 +18,7 @@ from ..evaluation.against_truth import SIDES
 from ..evaluation.paper_tables import OpeningSize, measure_opening
 from ..mesh import Mesh
 from ..pipeline.compare import MEASURES, Comparison
-from .comparison_folder import tables
+from .comparison_tables import tables
 from .pages import Shot, lowest_shown, page_template, shot
 
 _AROUND_MM = 18.0  # of a cut shown beside the patches

@@ -139,7 +139,7 @@ def load(
             "or unset CRANIO_NB_SCAN.",
         )
     if path:
-        from ..pipeline.run import read_truth
+        from ..pipeline.preparation import read_truth
 
         ct = read_ct(path)[0]
         return LessonCase(ct, read_truth(known, ct) if known else None, None)

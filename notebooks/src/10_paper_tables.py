@@ -227,14 +227,14 @@ pictures.picture(fig, alt, line.format(px * frame.length, *np.degrees(ends)))
 # %% tags=["nbval-check-output"]
 figure = figures.slice_figure(sliced, middle, bone, paper.patch, skeleton=True)
 alt = "The paper's preset: both balloons cross the gap flatter than the skull; patch in blue."
-pictures.picture(figure, alt, "steps " + ", ".join(str(n) for n in middle.values["n_iter"]))
+pictures.picture(figure, alt, "steps " + ", ".join(str(n) for n in middle.inflation.n_iter))
 
 # %% tags=["nbval-check-output"]
 fan = ours.working[0]
 middle = fan.slices[len(fan.slices) // 2]
 figure = figures.slice_figure(fan, middle, bone, ours.patch)
 alt = "The default: both curves go on as the bone does; the patch is as thick as the bone."
-pictures.picture(figure, alt, "steps " + ", ".join(str(n) for n in middle.values["n_iter"]))
+pictures.picture(figure, alt, "steps " + ", ".join(str(n) for n in middle.inflation.n_iter))
 
 # %% [markdown]
 # Look at the dashed lines of the first picture: the *start* continues the skull better than the balloon that the

@@ -7,6 +7,7 @@ import pytest
 from click.testing import CliRunner
 from scipy import ndimage
 
+import cranio_nb as cn
 from cranio_nb.cli.main import main
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.methods import thin_plate
@@ -241,8 +242,8 @@ def test_the_command_refuses_a_folder_without_skulls(tmp_path):
 def test_a_prior_draws_the_plate_towards_what_skulls_let_expect_but_not_off_the_rim(learned, skull, tmp_path):
     bone = skull("unilateral")
     save(learned, tmp_path / "prior.npz")
-    (alone,) = thin_plate.design(bone).working
-    made = thin_plate.design(bone, prior=str(tmp_path / "prior.npz"))
+    (alone,) = cn.design(bone, method="thin-plate").working
+    made = cn.design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
     (plate,) = made.working
     inside = ndimage.distance_transform_edt(plate.chart.hole) * plate.chart.step_mm
     rim, middle = (inside > 0) & (inside < 3), inside > 15
@@ -263,8 +264,8 @@ def test_a_prior_that_does_not_reach_the_hole_changes_nothing(learned, skull, tm
         return Expected(*np.full((2, *chart.hole.shape), np.nan), None)
 
     monkeypatch.setattr(thin_plate, "expect", nowhere)
-    made = thin_plate.design(bone, prior=str(tmp_path / "prior.npz"))
-    np.testing.assert_array_equal(made.patch.voxels, thin_plate.design(bone).patch.voxels)
+    made = cn.design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
+    np.testing.assert_array_equal(made.patch.voxels, cn.design(bone, method="thin-plate").patch.voxels)
     assert made.working[0].expected is None
 
 

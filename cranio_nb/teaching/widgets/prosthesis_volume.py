@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +17,12 @@ from ...drawing.canvas_axes import Chart
 from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
 from ...drawing.pixels import Window, plain, tinted
 from ...methods.design import design
+from ...methods.slicewise.slices import SliceResult
 from ...opening import Opening
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
 from .panel import Panel
 from .parts import SIDE, annotate_slice
-
-if TYPE_CHECKING:
-    from ...methods.slicewise.slices import SliceResult
 
 PRESSURES = ("from the end tangents", "the paper's constant k")
 _WORDS = {

@@ -15,15 +15,25 @@ from ..volume import Affine
 from .load_report import Finding
 
 MAX_VOXELS = 2**30
-_MAX_REST = 2**26  # bytes
+_MAX_REST_BYTES = 2**26  # bytes
 
 
 @dataclass(frozen=True, eq=False)
 class Image:
     """What a file says, before anything is made of it.
 
-    `raw` has the file's own axes (i, j, k) and numbers; `affine` maps their index to LPS mm; a value is
-    raw * `slope` + `intercept`.
+    Parameters
+    ----------
+    source : {"NIfTI", "NRRD"}
+        Kind of the file.
+    raw : ndarray, shape (I, J, K)
+        The file's own numbers on its own axes.
+    affine : ndarray, shape (4, 4)
+        Index (i, j, k, 1) -> world mm (LPS).
+    slope, intercept : float
+        A value is raw * slope + intercept.
+    findings : tuple of Finding
+        What was noticed.
     """
 
     source: str
@@ -35,12 +45,29 @@ class Image:
 
 
 def read_exactly(stream: BinaryIO, count: int) -> bytearray:
-    """`count` bytes of a stream, inflated or not.
+    """Read a number of bytes of a stream, inflated or not.
+
+    Parameters
+    ----------
+    stream : binary stream
+    count : int
+        Bytes that the header declares.
+
+    Returns
+    -------
+    bytearray
+        `count` of them.
 
     Raises
     ------
     InputRefused
         ``CorruptFile`` where it ends before.
+
+    Examples
+    --------
+    >>> import io
+    >>> read_exactly(io.BytesIO(b"voxels and more"), 6)
+    bytearray(b'voxels')
     """
     content = bytearray(count)
     view, filled = memoryview(content), 0
@@ -55,12 +82,28 @@ def read_exactly(stream: BinaryIO, count: int) -> bytearray:
 
 
 def check_rest(stream: BinaryIO) -> list[Finding]:
-    """Read on to the end, where packed data hold their checksum; what is left there is remarked upon.
+    """Read on to the end, where packed data hold their checksum.
 
-    No more than `_MAX_REST` bytes are inflated for it.
+    Parameters
+    ----------
+    stream : binary stream
+        Behind the voxels. No more than 2^26 bytes of it are inflated.
+
+    Returns
+    -------
+    list of Finding
+        A warning where bytes are left; else empty.
+
+    Examples
+    --------
+    >>> import io
+    >>> check_rest(io.BytesIO(b""))
+    []
+    >>> check_rest(io.BytesIO(b"more"))[0].values
+    {'at_least': 4}
     """
     rest = 0
-    while rest <= _MAX_REST:
+    while rest <= _MAX_REST_BYTES:
         part = stream.read(2**22)
         if not part:
             break
@@ -71,13 +114,28 @@ def check_rest(stream: BinaryIO) -> list[Finding]:
     return [Finding("BytesLeft", "warning", message, {"at_least": rest})]
 
 
-def spatial_shape(sizes: list[int]) -> tuple[int, int, int]:
-    """Three sizes of an image, axes of one sample beyond the third left out.
+def check_shape(sizes: list[int]) -> tuple[int, int, int]:
+    """Check that an image has three axes; further ones of one sample are left out.
+
+    Parameters
+    ----------
+    sizes : list of int
+        Samples along each axis.
+
+    Returns
+    -------
+    tuple of int
+        The three sizes.
 
     Raises
     ------
     InputRefused
         ``BadShape`` unless three axes remain; ``LimitExceeded`` beyond `MAX_VOXELS`.
+
+    Examples
+    --------
+    >>> check_shape([512, 512, 68, 1])
+    (512, 512, 68)
     """
     if len(sizes) < 3 or any(size != 1 for size in sizes[3:]) or min(sizes) < 1:
         message = f"The image has the sizes {' x '.join(str(s) for s in sizes)}; three axes are wanted."
@@ -90,5 +148,15 @@ def spatial_shape(sizes: list[int]) -> tuple[int, int, int]:
 
 
 def no_orientation(what: str) -> InputRefused:
-    """The refusal for a file that does not say where left is."""
+    """The refusal for a file that does not say where left is.
+
+    Parameters
+    ----------
+    what : str
+        One sentence: what the file lacks.
+
+    Returns
+    -------
+    InputRefused
+    """
     return InputRefused("NoOrientation", what, "Convert it again with its orientation, or allow no_orientation.")

@@ -19,7 +19,7 @@ _PREAMBLE = 132  # bytes before the first element
 
 
 def list_files(folder: Path) -> tuple[list[Path], list[Finding]]:
-    """Regular, non-empty files below a folder, sorted by name.
+    """List the regular, non-empty files below a folder, sorted by name.
 
     Parameters
     ----------
@@ -36,6 +36,15 @@ def list_files(folder: Path) -> tuple[list[Path], list[Finding]]:
     ------
     InputRefused
         ``LimitExceeded`` for too many files, ``CorruptDicom`` for an empty image file, ``PermissionDenied``.
+
+    Examples
+    --------
+    >>> Path("scan/a").mkdir(parents=True)
+    >>> for name in ("a/2.dcm", "1.dcm", "DICOMDIR"):
+    ...     _ = Path("scan", name).write_bytes(bytes(200))
+    >>> files, findings = list_files(Path("scan"))
+    >>> [file.name for file in files], findings[0].values
+    (['1.dcm', '2.dcm'], {'file index': 1})
     """
     files: list[Path] = []
     skipped: Counter[str] = Counter()
@@ -67,6 +76,7 @@ def _walk(folder: Path, depth: int) -> Iterator[tuple[os.DirEntry[str], str]]:
 
 
 def _kind(entry: os.DirEntry[str]) -> str:
+    """What an entry is: a file, or why it is left out."""
     if entry.is_symlink():
         return "link"
     if not entry.is_file(follow_symlinks=False):

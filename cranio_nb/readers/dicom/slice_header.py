@@ -14,19 +14,52 @@ import numpy as np
 from numpy.typing import NDArray
 from pydicom.dataset import Dataset
 
-from .scan import PixelPlace, refusing
+from .parse import PixelPlace, refusing
 
 Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
 class SliceHeader:
-    """What one image says about itself.
+    """What one image says about itself; `read_headers` makes it.
 
-    `position` (3,) and `orientation` (6,) are LPS mm, `spacing` (2,) is mm between rows and between columns.
-    `person` holds digests of the identity, good only for telling two patients apart. `padding` is the closed range
-    of stored values that mean "outside the field of view". `place` is None for an image without pixel data, and
-    `frame` is the image's index among the `frames` of its file.
+    Parameters
+    ----------
+    file : int
+        Index among the folder's files.
+    place : PixelPlace or None
+        Where its pixels lie; None for an image without pixel data.
+    frame, frames : int
+        Index among the images of its file, and how many they are.
+    sop_class, modality, series, study, frame_of_reference, acquisition, content_time, rescale_type, photometric : str
+        The elements' own text; empty where absent.
+    image_type : tuple of str
+    series_number, instance : int or None
+        Numbers of the series, and of the image in it.
+    person : tuple of str
+        Digests of the identity, good only for telling two patients apart.
+    kernel : str
+        Name of the reconstruction kernel.
+    thickness : float or None
+        mm.
+    rows, cols : int
+        px.
+    position : ndarray, shape (3,), or None
+        Centre of the first pixel, mm, LPS.
+    orientation : ndarray, shape (6,), or None
+        Unit directions in which the column and the row index grow, LPS.
+    spacing : ndarray, shape (2,), or None
+        mm between rows, and between columns.
+    slope, intercept : float or None
+        HU = stored * slope + intercept.
+    padding : tuple of float or None
+        Closed range of stored values that mean "outside the field of view".
+    samples : int
+        Numbers a pixel.
+    bits : tuple of int
+        Allocated, stored, and the highest of the stored, counted from 0.
+    signed, has_lut, lossy : bool
+        Whether stored numbers have a sign; HU are given by a table; the pixels were compressed with loss.
     """
 
     file: int
@@ -57,28 +90,53 @@ class SliceHeader:
     padding: tuple[float, float] | None
     samples: int
     photometric: str
-    bits: tuple[int, int, int]  # allocated, stored, high bit
+    bits: tuple[int, int, int]
     signed: bool
     has_lut: bool
     lossy: bool
 
 
-def slice_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
-    """One header per image: a classic file holds one, a multi-frame file one per frame, other files none.
+def read_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
+    """Read the header of each image in a file.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Its elements, from `parse.parse_file`.
+    place : PixelPlace or None
+        Where its pixels lie.
+    file : int
+        Index among the folder's files.
+
+    Returns
+    -------
+    list of SliceHeader
+        One for a classic file, one a frame for a multi-frame file, none for a file without images.
 
     Raises
     ------
     InputRefused
         ``CorruptDicom`` where the elements cannot be made sense of.
+
+    Examples
+    --------
+    >>> from data_synth import write_dicom
+    >>> from .parse import parse_file
+    >>> affine = np.array([[0, 0, 0.5, -10], [0, 0.5, 0, -20], [2.5, 0, 0, 100], [0, 0, 0, 1]])
+    >>> path = write_dicom("scan", np.zeros((8, 4, 6), np.int16), affine)[3]
+    >>> (header,) = read_headers(*parse_file(path, 0), 0)
+    >>> header.position, header.spacing, (header.rows, header.cols)
+    (array([-10. , -20. , 107.5]), array([0.5, 0.5]), (4, 6))
     """
     with refusing(file):
-        return _slice_headers(dataset, place, file)
+        return _headers_of(dataset, place, file)
 
 
-def _slice_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
+def _headers_of(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
     if "Rows" not in dataset or "Columns" not in dataset:
         return []
     frames = int(dataset.get("NumberOfFrames") or 1)
+    # what a multi-frame file says of all frames, and of each
     shared = _first(dataset, "SharedFunctionalGroupsSequence")
     per_frame = dataset.get("PerFrameFunctionalGroupsSequence") or []
     common = _common(dataset, place, file, frames)
@@ -90,6 +148,7 @@ def _slice_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> lis
 
 
 def _common(dataset: Dataset, place: PixelPlace | None, file: int, frames: int) -> dict[str, Any]:
+    # of bits, the defaults of the standard
     allocated = _int(dataset, "BitsAllocated") or 0
     stored = _int(dataset, "BitsStored") or allocated
     high = _int(dataset, "HighBit")
@@ -125,6 +184,7 @@ def _placement(dataset: Dataset, groups: list[Dataset | None], frame: int) -> di
     def source(sequence: str) -> Dataset:
         return next((item for g in groups if g is not None and (item := _first(g, sequence)) is not None), dataset)
 
+    # a frame's own group goes before the shared one, and both before the file's own elements
     rescale = source("PixelValueTransformationSequence")
     measures = source("PixelMeasuresSequence")
     frame_type = _texts(source("CTImageFrameTypeSequence"), "FrameType")

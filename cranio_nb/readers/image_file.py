@@ -13,17 +13,49 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..volume import Volume, canonical_order
-from .hu_checks import AIR, check_finite, check_hu, clear_padding, is_mask
-from .image import Image
+from .hu_checks import AIR_HU, check_finite, check_hu, clear_padding, is_mask
 from .load_report import Finding, LoadReport
 from .regrid import slide_slices
+from .stored_image import Image
 
-_SPACING_RANGE = (0.1, 10.0)  # mm
-_CORNER_TOL = 0.05  # mm
+_SPACING_RANGE_MM = (0.1, 10.0)  # mm
+_CORNER_TOL_MM = 0.05  # mm
 
 
 def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] = ()) -> tuple[Volume, LoadReport]:
-    """Read one NIfTI or NRRD file; parameters, returns and errors are those of `cranio_nb.readers.read_ct`."""
+    """Read one NIfTI or NRRD file.
+
+    Parameters
+    ----------
+    path : Path
+        A .nii, .nii.gz or .nrrd file, known by its first bytes.
+    mask, allow
+        As for `cranio_nb.readers.read_ct`.
+
+    Returns
+    -------
+    volume : Volume
+        HU as int16 or float32, or bool for a mask; planes up, rows back, columns left.
+    report : LoadReport
+
+    Raises
+    ------
+    InputRefused
+        Whatever cannot be read safely.
+
+    Examples
+    --------
+    NIfTI counts x to the right and y to the front; world here is LPS:
+
+    >>> import nibabel
+    >>> mask = np.zeros((6, 7, 8), np.uint8)
+    >>> mask[1, 2, 3] = 1
+    >>> nibabel.save(nibabel.Nifti1Image(mask, np.eye(4)), "mask.nii.gz")
+    >>> bone, report = read_image(Path("mask.nii.gz"))
+    >>> report.kind, bone.to_world(np.argwhere(bone.voxels))
+    ('mask', array([[-1., -2.,  3.]]))
+    """
+    # each format's library is loaded only where it is needed
     with open(path, "rb") as stream:
         start = stream.read(352)
         stream.seek(0)
@@ -41,11 +73,21 @@ def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] =
 
 
 def check_grid(image: Image) -> None:
-    """Refuse an affine that is not finite and invertible, or voxels of an impossible size (``BadGeometry``)."""
+    """Refuse an affine that is not finite and invertible, or voxels of an impossible size.
+
+    Parameters
+    ----------
+    image : Image
+
+    Raises
+    ------
+    InputRefused
+        ``BadGeometry``; ``BadShape`` for a single plane.
+    """
     matrix, remedy = image.affine[:3, :3], "Convert the file again from its source."
     if not np.isfinite(image.affine).all() or abs(np.linalg.det(matrix)) < 1e-9:
         raise InputRefused("BadGeometry", "The file's affine is not finite and invertible.", remedy)
-    spacing, (low, high) = np.linalg.norm(matrix, axis=0), _SPACING_RANGE
+    spacing, (low, high) = np.linalg.norm(matrix, axis=0), _SPACING_RANGE_MM
     if spacing.min() < low or spacing.max() > high:
         listed = " x ".join(f"{s:.4g}" for s in spacing)
         message = f"Voxels measure {listed} mm; {low:g} to {high:g} mm are wanted."
@@ -66,6 +108,7 @@ def _values(image: Image, mask: bool | None, allow: Collection[str]) -> tuple[ND
 
 
 def _scaled(raw: NDArray, slope: float, intercept: float) -> NDArray:
+    """The values: whole numbers stay whole."""
     if raw.dtype.kind in "iu" and slope.is_integer() and intercept.is_integer():
         return raw.astype(np.int32 if raw.itemsize <= 2 else np.int64) * int(slope) + int(intercept)
     return (raw * slope + intercept).astype(np.float32)
@@ -73,6 +116,7 @@ def _scaled(raw: NDArray, slope: float, intercept: float) -> NDArray:
 
 def _compact(hu: NDArray) -> NDArray:
     """int16 where all values are whole and fit, else float32."""
+    # whole numbers may be stored as real ones
     info = np.iinfo(np.int16)
     if info.min <= hu.min() and hu.max() <= info.max:
         whole = hu.astype(np.int16)
@@ -82,6 +126,8 @@ def _compact(hu: NDArray) -> NDArray:
 
 
 def _finish(image: Image, voxels: NDArray, findings: list[Finding]) -> tuple[Volume, LoadReport]:
+    """The upright volume on the package's axes, and the report."""
+    # axes permuted and flipped into the package's order
     stored = Volume(voxels, image.affine)
     order = canonical_order(image.affine)
     volume = stored.reorder(order)
@@ -95,18 +141,22 @@ def _finish(image: Image, voxels: NDArray, findings: list[Finding]) -> tuple[Vol
 
 
 def _upright(volume: Volume) -> tuple[Volume, list[Finding]]:
-    """A volume whose planes stand on each other: a sheared one has its planes shifted back."""
+    """A volume whose planes lie straight above each other: a sheared one has its planes shifted back."""
     planes, rows, cols = volume.affine[:3, :3].T
     spacing = volume.spacing
-    if abs(rows @ cols) / (spacing[1] * spacing[2]) * max(volume.shape[1:]) * spacing[1:].max() > _CORNER_TOL:
+    if abs(rows @ cols) / (spacing[1] * spacing[2]) * max(volume.shape[1:]) * spacing[1:].max() > _CORNER_TOL_MM:
         message = "The rows and columns of the file's affine are not at right angles."
         raise InputRefused("BadGeometry", message, "Resample the image onto a straight grid.")
+
+    # how far each plane slides against the one below, in px along rows and columns
     in_plane = np.stack([rows, cols])
     slide = in_plane @ planes / spacing[1:] ** 2
     count = volume.shape[0]
     if np.abs(slide).max() * (count - 1) <= 0.5:
         return volume, []
-    fill = 0 if volume.voxels.dtype == bool else AIR
+
+    # the planes shifted back, and the plane axis set upright
+    fill = 0 if volume.voxels.dtype == bool else AIR_HU
     voxels, start = slide_slices(volume.voxels, np.arange(count)[:, None] * slide, fill=fill)
     affine = volume.affine.copy()
     affine[:3, 0] = planes - slide @ in_plane

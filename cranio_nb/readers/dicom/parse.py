@@ -47,8 +47,20 @@ _TAGS: list[BaseTag | int] = [BaseTag(tag) for tag in map(tag_for_keyword, _KEYW
 class PixelPlace:
     """Where the pixel data of a file lie.
 
-    `offset` counts bytes in the file (inflated, where it is deflated); `length` is `UNDEFINED_LENGTH` for
-    encapsulated data. `file` is the index among the folder's files, for messages.
+    Parameters
+    ----------
+    path : Path
+        The file.
+    file : int
+        Its index among the folder's files, for messages.
+    syntax : str
+        UID of the transfer syntax.
+    offset : int
+        Bytes from the start of the file (inflated, where it is deflated) to the pixel data.
+    length : int
+        Bytes of pixel data; `UNDEFINED_LENGTH` for encapsulated data.
+    is_float : bool
+        Whether they are floating-point numbers.
     """
 
     path: Path
@@ -60,14 +72,29 @@ class PixelPlace:
 
 
 def looks_like_dicom(start: bytes) -> bool:
-    """Whether a file's first bytes (136 or more) are those of DICOM, with its preamble or without."""
+    r"""Whether a file's first bytes are those of DICOM, with its preamble or without.
+
+    Parameters
+    ----------
+    start : bytes
+        136 or more.
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> looks_like_dicom(bytes(128) + b"DICM" + b"\x02\x00\x00\x00"), looks_like_dicom(bytes(136))
+    (True, False)
+    """
     if start[128:132] == b"DICM":
         return start[132:134] in (b"\x02\x00", b"\x08\x00", b"")
     return len(start) >= 132 and start[:2] in (b"\x08\x00", b"\x02\x00") and start[3:4] == b"\x00"
 
 
-def scan(path: Path, file: int) -> tuple[Dataset, PixelPlace | None] | None:
-    """The elements that matter of one file, and the place of its pixels.
+def parse_file(path: Path, file: int) -> tuple[Dataset, PixelPlace | None] | None:
+    """Parse one file: the elements that matter, and the place of its pixels.
 
     Parameters
     ----------
@@ -85,17 +112,48 @@ def scan(path: Path, file: int) -> tuple[Dataset, PixelPlace | None] | None:
     ------
     InputRefused
         ``CorruptDicom``, ``CorruptPixelData`` or ``LimitExceeded``, naming the file by its index.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from data_synth import write_dicom
+    >>> path = write_dicom("scan", np.zeros((8, 4, 6), np.int16), np.eye(4)[[2, 1, 0, 3]])[0]
+    >>> dataset, place = parse_file(path, 0)
+    >>> dataset.Rows, dataset.Columns, place.length
+    (4, 6, 48)
     """
     with open(path, "rb") as stream:
         if not looks_like_dicom(stream.read(136)):
             return None
         with refusing(file):
-            return _scan(stream, path, file)
+            return _parse_stream(stream, path, file)
 
 
 @contextmanager
 def refusing(file: int) -> Iterator[None]:
-    """Turn whatever the parsing of a file raises into one sentence that names the file by its index."""
+    """Turn whatever the parsing of a file raises into one sentence that names the file by its index.
+
+    Parameters
+    ----------
+    file : int
+        Index among the folder's files.
+
+    Returns
+    -------
+    context manager
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptDicom``.
+
+    Examples
+    --------
+    >>> with refusing(7):
+    ...     int("no number")
+    Traceback (most recent call last):
+    cranio_nb.errors.InputRefused: DICOM file 7 of the folder cannot be parsed (ValueError). Copy the scan again ...
+    """
     try:
         with warnings.catch_warnings():
             # odd values are judged later, when it is known whether they matter
@@ -109,16 +167,52 @@ def refusing(file: int) -> Iterator[None]:
 
 
 def corrupt(file: int, what: str, code: str = "CorruptDicom") -> InputRefused:
-    """The refusal for a damaged file, named by its index."""
+    """The refusal for a damaged file.
+
+    Parameters
+    ----------
+    file : int
+        Index among the folder's files.
+    what : str
+        What is wrong with it: the end of a sentence.
+    code : str
+        Code of the refusal.
+
+    Returns
+    -------
+    InputRefused
+    """
     return InputRefused(code, f"DICOM file {file} of the folder {what}.", "Copy the scan again from its source.")
 
 
-def dataset_stream(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
-    """The meta elements of an open file, and a stream at the start of its data set (inflated where deflated)."""
+def open_dataset(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
+    """Read the meta elements of an open file, and come to the start of its data set.
+
+    Parameters
+    ----------
+    stream : binary stream
+        The whole file.
+    file : int
+        Index among the folder's files.
+
+    Returns
+    -------
+    meta : Dataset
+        Elements of group 2.
+    stream : binary stream
+        At the first element of the data set; in memory and inflated, where the file is deflated.
+
+    Raises
+    ------
+    InputRefused
+        ``LimitExceeded`` for more than `MAX_INFLATED` bytes.
+    """
     stream.seek(128)
+    # without preamble the elements begin at once
     if stream.read(4) != b"DICM":
         stream.seek(0)
     meta = read_dataset(stream, False, True, stop_when=lambda tag, vr, length: tag >> 16 != 2)
+    # deflated: everything behind the meta elements is one packed stream
     if meta.get("TransferSyntaxUID") != DeflatedExplicitVRLittleEndian:
         return meta, stream
     inflate = zlib.decompressobj(-zlib.MAX_WBITS)
@@ -128,8 +222,9 @@ def dataset_stream(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
     return meta, io.BytesIO(inflated)
 
 
-def _scan(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace | None]:
-    meta, data = dataset_stream(stream, file)
+def _parse_stream(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace | None]:
+    """The elements before the pixels; the reading stops at the pixels and notes where that is."""
+    meta, data = open_dataset(stream, file)
     syntax = str(meta.get("TransferSyntaxUID") or ImplicitVRLittleEndian)
     places: list[PixelPlace] = []
 
@@ -140,6 +235,8 @@ def _scan(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace 
 
     implicit, little = syntax == ImplicitVRLittleEndian, syntax != ExplicitVRBigEndian
     dataset = read_dataset(data, implicit, little, stop_when=at_pixels, specific_tags=_TAGS)
+
+    # what is declared must be there
     if not places:
         _check_end(data, meta, dataset, file)
     if "Rows" in dataset or "Columns" in dataset:
@@ -168,6 +265,7 @@ def _last_is_cut(dataset: Dataset) -> bool:
 
 
 def _check_sides(dataset: Dataset, file: int) -> None:
+    """Refuse images without size, or with one beyond the limits."""
     sides = (("rows", "Rows", MAX_SIDE), ("columns", "Columns", MAX_SIDE), ("frames", "NumberOfFrames", MAX_SLICES))
     for what, keyword, cap in sides:
         declared = dataset.get(keyword, 1 if what == "frames" else None)
@@ -194,10 +292,12 @@ def _check_length(data: BinaryIO, place: PixelPlace) -> None:
 
 
 def _items_complete(data: BinaryIO, offset: int, size: int) -> bool:
+    """Whether the items of encapsulated pixel data follow each other up to their end mark."""
     while offset + 8 <= size:
         data.seek(offset)
         group, element, length = struct.unpack("<HHL", data.read(8))
         tag = group << 16 | element
+        # an end mark, or an item with its own length
         if tag == _SEQUENCE_END:
             return True
         if tag != _ITEM or length == UNDEFINED_LENGTH:

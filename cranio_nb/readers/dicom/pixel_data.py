@@ -1,4 +1,7 @@
-"""`SliceHeader` -> stored numbers of its image, (rows, cols); then stored numbers -> HU."""
+"""`SliceHeader` -> the numbers of its image as stored, shape (rows, cols). `rescale` turns them into HU.
+
+The format is checked before anything is decoded.
+"""
 
 from __future__ import annotations
 
@@ -14,10 +17,9 @@ from pydicom.uid import (
 )
 
 from ...errors import InputRefused
-from ..hu_checks import AIR
-from .codecs import COMPRESSED, decode, missing_decoder
-from .headers import SliceHeader
-from .scan import UNDEFINED_LENGTH, PixelPlace, dataset_stream
+from .codecs import COMPRESSED, decode, find_missing_decoder
+from .parse import UNDEFINED_LENGTH, PixelPlace, open_dataset
+from .slice_header import SliceHeader
 
 _NATIVE = {ImplicitVRLittleEndian, ExplicitVRLittleEndian, ExplicitVRBigEndian, DeflatedExplicitVRLittleEndian}
 
@@ -25,11 +27,18 @@ _NATIVE = {ImplicitVRLittleEndian, ExplicitVRLittleEndian, ExplicitVRBigEndian, 
 def check_format(header: SliceHeader, index: int) -> None:
     """Refuse pixels that cannot be read as one number per pixel, before anything is decoded.
 
+    Parameters
+    ----------
+    header : SliceHeader
+    index : int
+        The slice's number in messages.
+
     Raises
     ------
     InputRefused
         ``UnsupportedTransferSyntax``, ``UnsupportedPixels`` or ``CorruptPixelData``, naming the slice.
     """
+    # a transfer syntax that can be decoded here
     place, (allocated, stored, high) = _place(header, index), header.bits
     if place.syntax not in _NATIVE and place.syntax not in COMPRESSED:
         raise InputRefused(
@@ -37,10 +46,12 @@ def check_format(header: SliceHeader, index: int) -> None:
             f"Slice {index} is stored in the transfer syntax {_uid(place.syntax)}, which cannot be read.",
             "Export the scan again as uncompressed DICOM.",
         )
-    package = missing_decoder(place.syntax)
+    package = find_missing_decoder(place.syntax)
     if package:
         message = f"Slice {index} is stored in the transfer syntax {_uid(place.syntax)}, whose decoder is missing."
         raise InputRefused("UnsupportedTransferSyntax", message, f"Install it: pip install {package}")
+
+    # integers of whole bytes
     big = place.syntax == ExplicitVRBigEndian
     if place.is_float or header.has_lut or allocated not in (8, 16, 32) or (big and allocated != 16):
         what = "floating point" if place.is_float else "table" if header.has_lut else f"{allocated}-bit"
@@ -49,6 +60,8 @@ def check_format(header: SliceHeader, index: int) -> None:
             f"Slice {index} holds {what} pixels; integers of 8, 16 or 32 bits are wanted.",
             "Export the scan again as a plain CT series.",
         )
+
+    # bits, syntax and length agree with each other
     if not 1 <= stored <= allocated or not stored - 1 <= high < allocated:
         raise _corrupt(index, f"declares {stored} of {allocated} bits with the highest at {high}")
     if (place.length == UNDEFINED_LENGTH) != (place.syntax in COMPRESSED):
@@ -57,15 +70,36 @@ def check_format(header: SliceHeader, index: int) -> None:
         _check_size(header, place, index)
 
 
-def stored_pixels(header: SliceHeader, index: int) -> NDArray[np.integer]:
-    """The numbers of one image as stored, shape (rows, cols), of the header's bits and sign.
+def read_pixels(header: SliceHeader, index: int) -> NDArray[np.integer]:
+    """Read the numbers of one image as stored.
 
-    Unused high bits are still there in uncompressed data: `to_hu` clears them.
+    Parameters
+    ----------
+    header : SliceHeader
+        Of an image that passed `check_format`.
+    index : int
+        The slice's number in messages.
+
+    Returns
+    -------
+    ndarray of int, shape (rows, cols)
+        Of the header's bits and sign. Unused high bits are still there in uncompressed data: `clear_unused_bits`.
 
     Raises
     ------
     InputRefused
         ``CorruptPixelData`` naming the slice, whatever the decoder met.
+
+    Examples
+    --------
+    >>> from data_synth import write_dicom
+    >>> from .parse import parse_file
+    >>> from .slice_header import read_headers
+    >>> hu = np.arange(8 * 4 * 4, dtype=np.int16).reshape(8, 4, 4)
+    >>> path = write_dicom("scan", hu, np.eye(4)[[2, 1, 0, 3]])[5]
+    >>> (header,) = read_headers(*parse_file(path, 0), 0)
+    >>> bool((read_pixels(header, 0) + header.intercept == hu[5]).all())
+    True
     """
     try:
         place = _place(header, index)
@@ -79,61 +113,49 @@ def stored_pixels(header: SliceHeader, index: int) -> NDArray[np.integer]:
     return pixels
 
 
-def pixel_digest(header: SliceHeader, index: int) -> str:
-    """Digest of the stored numbers, to tell a copied slice from another one at the same place."""
-    pixels = stored_pixels(header, index)
-    return hashlib.sha256(np.ascontiguousarray(pixels).tobytes()).hexdigest()
-
-
-def to_hu(
-    stored: NDArray[np.integer], header: SliceHeader, slope: float, intercept: float
-) -> tuple[NDArray, NDArray[np.bool_] | None]:
-    """HU of stored numbers, and where the padding is.
+def digest_pixels(pixels: NDArray[np.integer]) -> str:
+    """Digest the stored numbers of one image, to tell a copied slice from another one at the same place.
 
     Parameters
     ----------
-    stored : ndarray, shape (rows, cols)
-        From `stored_pixels`.
-    slope, intercept : float
-        The slice's own rescale.
+    pixels : ndarray of int, shape (rows, cols)
 
     Returns
     -------
-    hu : ndarray, shape (rows, cols)
-        int16 where slope and intercept are whole numbers and the values fit, else float32. Never inverted: the
-        photometric interpretation only concerns displays.
-    padding : ndarray of bool, shape (rows, cols), or None
+    str
+        SHA-256 in hexadecimal digits.
+
+    Examples
+    --------
+    >>> digest_pixels(np.eye(3, dtype=np.int16)) == digest_pixels(np.eye(3, dtype=np.int16).T)
+    True
     """
-    padding = None
-    if header.padding is not None and _is_padding(header.padding, slope, intercept):
-        low, high = header.padding
-        padding = (stored == low) if low == high else (stored >= low) & (stored <= high)
-    values = _without_unused_bits(stored, header)
-    whole = float(slope).is_integer() and float(intercept).is_integer()
-    if not whole or not _fits(values, slope, intercept):
-        hu: NDArray = (values * slope + intercept).astype(np.float32)
-    elif slope == 1:
-        hu = (values + np.int32(intercept)).astype(np.int16) if intercept else values.astype(np.int16)
-    else:
-        hu = (values.astype(np.int64) * int(slope) + int(intercept)).astype(np.int16)
-    if padding is not None:
-        hu[padding] = AIR
-    return hu, padding
+    return hashlib.sha256(np.ascontiguousarray(pixels).tobytes()).hexdigest()
 
 
-def _is_padding(stored: tuple[float, float], slope: float, intercept: float) -> bool:
-    """Padding lies outside the values of a head; a range inside them would punch holes into it."""
-    low, high = sorted(value * slope + intercept for value in stored)
-    return high <= -900 or low > 4000
+def clear_unused_bits(stored: NDArray[np.integer], header: SliceHeader) -> NDArray[np.integer]:
+    """Keep the stored bits alone: what lies above or below them is not image.
 
+    Parameters
+    ----------
+    stored : ndarray of int, shape (rows, cols)
+    header : SliceHeader
+        Its `bits`: allocated, stored, and the highest of the stored.
 
-def _fits(values: NDArray[np.integer], slope: float, intercept: float) -> bool:
-    ends = (int(values.min()) * slope + intercept, int(values.max()) * slope + intercept)
-    return min(ends) >= -32768 and max(ends) <= 32767
+    Returns
+    -------
+    ndarray of int, shape (rows, cols)
+        Of the same type, shifted down to the lowest bit, the sign extended.
 
+    Examples
+    --------
+    Twelve of sixteen bits are image; the four above hold something else:
 
-def _without_unused_bits(stored: NDArray[np.integer], header: SliceHeader) -> NDArray[np.integer]:
-    """The stored bits alone, sign extended: what stands above or below them is not image."""
+    >>> from types import SimpleNamespace
+    >>> header = SimpleNamespace(bits=(16, 12, 11), place=SimpleNamespace(syntax=ExplicitVRLittleEndian))
+    >>> clear_unused_bits(np.array([0xF123], np.uint16), header) == 0x123
+    array([ True])
+    """
     allocated, bits, high = header.bits
     if bits == allocated or _place(header, 0).syntax in COMPRESSED:
         return stored
@@ -142,10 +164,11 @@ def _without_unused_bits(stored: NDArray[np.integer], header: SliceHeader) -> ND
 
 
 def _native(header: SliceHeader, place: PixelPlace, index: int) -> NDArray[np.integer]:
+    """Uncompressed pixels of one frame, in the machine's byte order."""
     size = _frame_bytes(header)
     with open(place.path, "rb") as stream:
         if place.syntax == DeflatedExplicitVRLittleEndian:
-            _, data = dataset_stream(stream, place.file)
+            _, data = open_dataset(stream, place.file)
         else:
             data = stream
         data.seek(place.offset + header.frame * size)
@@ -158,6 +181,7 @@ def _native(header: SliceHeader, place: PixelPlace, index: int) -> NDArray[np.in
 
 
 def _check_size(header: SliceHeader, place: PixelPlace, index: int) -> None:
+    """Refuse pixel data that are shorter than announced, or longer by a row or more."""
     wanted, row = _frame_bytes(header) * header.frames, header.cols * header.bits[0] // 8
     if not wanted <= place.length < wanted + max(row, 2):
         raise _corrupt(index, f"holds {place.length} bytes of pixels where its header announces {wanted}")
