@@ -12,11 +12,12 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..geometry import face_sides
+from ..geometry.closest_point import nearest
 from ..mesh import Mesh
 from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
 from ..stages import surface_reconstruction
 from ..volume import Volume
-from .mesh_distances import distance_stats, in_voxels, surface_distance
+from .mesh_distances import distance_stats, in_voxels
 from .scores import Score, score
 
 SIDES = {"outer": OUTER, "inner": INNER}
@@ -81,7 +82,7 @@ def side_distances(made: Prosthesis, true: Prosthesis) -> dict[str, NDArray[np.f
 
     Only sides that both have.
     """
-    return {name: surface_distance(own.vertices, other) for name, own, other in _both_sides(made, true)}
+    return {name: nearest(own.vertices, other).distance for name, own, other in _both_sides(made, true)}
 
 
 def table3(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, DistanceStats]:
@@ -89,7 +90,7 @@ def table3(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, Distan
     found = {}
     for name, own, other in _both_sides(made, true):
         nodes = in_voxels(own, bone).vertices
-        found[name] = distance_stats(surface_distance(nodes, in_voxels(other, bone)))
+        found[name] = distance_stats(nearest(nodes, in_voxels(other, bone)).distance)
     return found
 
 

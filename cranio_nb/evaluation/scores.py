@@ -15,7 +15,8 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..errors import InputRefused
-from ..volume import Box, Volume, check_same_grid
+from ..grid import Box, box_around
+from ..volume import Volume, check_same_grid
 
 BORDER_MM = 10.0
 """Reach of the border Dice around the bone of the defective skull (AutoImplant challenge 2021)."""
@@ -166,7 +167,7 @@ def _near_bone(skull: Volume, index: NDArray[np.intp], reach: float) -> NDArray[
         return near
     # only bone in reach of any of the voxels counts
     margin = np.ceil(reach * np.linalg.norm(skull.steps(np.eye(3)), axis=0)).astype(int) + 1
-    box = skull.box_around(index, margin)
+    box = box_around(index, skull.shape, margin)
     bone = np.argwhere(_surface(skull.voxels[box])) + [side.start for side in box]
     if not len(bone):
         return near

@@ -119,5 +119,5 @@ def _completed(radii: Array) -> Array:
     """Radius maps (n, 2, m) of intact skulls; where a ray is missing or far off, the offset around it holds."""
     middle = np.nanmedian(np.concatenate([radii, mirror_radii(radii)]), axis=0)
     usual = np.stack([middle + local_median(one - middle) for one in radii])
-    sound = np.stack([without_outliers(one, middle) for one in radii])
+    sound = np.stack([without_outliers(one, around) for one, around in zip(radii, usual, strict=True)])
     return np.where(np.isfinite(sound), sound, usual)

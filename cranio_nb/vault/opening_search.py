@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused, NoOpening
+from ..grid import inside_grid
 from ..opening import Opening
-from ..volume import Volume, inside_grid
+from ..volume import Volume
 from .orientation import head_axes, head_centre
 from .ray_casting import FAR_MM, NEAR_MM
 from .ray_grid import RayGrid, filled_from_nearest

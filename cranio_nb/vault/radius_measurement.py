@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..geometry.robust import huber_weights, reweighted_fit, spread
+from ..grid import inside_grid
 from ..opening import Opening
-from ..volume import Volume, inside_grid
+from ..volume import Volume
 from .ray_casting import expected_radius, surface_radii
 from .ray_grid import RadiusMap, RayGrid
 
