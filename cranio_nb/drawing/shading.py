@@ -15,6 +15,7 @@ from scipy import ndimage
 from skimage.measure import marching_cubes
 
 from ..geometry.slice_distance import plane_distances
+from ..grid import move_affine
 from ..mesh import Mesh
 from ..volume import Volume
 
@@ -123,14 +124,14 @@ def _field(part: Volume) -> Volume:
     padded = np.pad(part.voxels, [(0, int(-n % b)) for n, b in zip(part.shape, block, strict=True)])
     p, r, c = (n // b for n, b in zip(padded.shape, block, strict=True))
     share = padded.reshape(p, block[0], r, block[1], c, block[2]).mean(axis=(1, 3, 5), dtype=np.float32)
-    coarse = Volume(share, part.affine_from((block - 1) / 2, block))
+    coarse = Volume(share, move_affine(part.affine, (block - 1) / 2, block))
     split = max(1, round(float(coarse.spacing[0]) / _COARSE))
     field = share - np.float32(0.4)
     if split > 1:
         distances = plane_distances(share > 0.4, 8.0).astype(np.float32)
         field = ndimage.zoom(distances, (((p - 1) * split + 1) / p, 1, 1), order=1)
     sigma = (0.7, 0.7, 0.7) if split == 1 else (0.8 * split, 1.3, 1.3)
-    return Volume(ndimage.gaussian_filter(field, sigma), coarse.affine_from((0, 0, 0), (1 / split, 1, 1)))
+    return Volume(ndimage.gaussian_filter(field, sigma), move_affine(coarse.affine, (0, 0, 0), (1 / split, 1, 1)))
 
 
 def render(solids: Sequence[Solid], towards: ArrayLike, *, px: float = 0.5, shaded: bool = True) -> Picture:

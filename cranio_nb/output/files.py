@@ -26,8 +26,9 @@ from numpy.typing import NDArray
 
 from ..errors import CannotWrite
 from ..geometry.mesh_check import MeshReport, check_mesh
+from ..grid import AxisOrder
 from ..mesh import Mesh
-from ..volume import AxisOrder, Volume
+from ..volume import Volume
 
 MESH_FORMATS = (".stl", ".ply", ".3mf")
 _MESH_TOLERANCE = 1e-3  # mm; single precision keeps 6e-5 mm at 800 mm

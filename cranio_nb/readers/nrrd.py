@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
-from ..volume import Affine
+from ..grid import Affine
 from .image import Image, check_rest, no_orientation, read_exactly, spatial_shape
 from .load_report import Finding
 

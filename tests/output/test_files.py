@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import CannotWrite
+from cranio_nb.grid import AxisOrder, canonical_order
 from cranio_nb.mesh import Mesh
 from cranio_nb.output import files
 from cranio_nb.output.files import MESH_FORMATS, jsonable, output_folder, validate, write_json, write_mesh, write_nifti
 from cranio_nb.stages.surface_reconstruction import extract_surface
-from cranio_nb.volume import AxisOrder, Volume, canonical_order
+from cranio_nb.volume import Volume
 
 
 @pytest.fixture
