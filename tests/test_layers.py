@@ -30,7 +30,7 @@ FLOORS = [  # a folder imports only what stands above it in this list; the nouns
 ]
 LIGHT = FLOORS[: FLOORS.index("implant") + 1]  # these load no heavy library
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
-OWNERS = {"matplotlib": "drawing.figures", "pyvista": "drawing.scene3d", "ipywidgets": "teaching.widgets.live"}
+OWNERS = {"matplotlib": "drawing.figures.axes", "pyvista": "drawing.scene3d", "ipywidgets": "teaching.widgets.live"}
 SHARED_BY_METHODS = {"catalogue", "assembly"}
 
 

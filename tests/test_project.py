@@ -17,7 +17,7 @@ from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
 import cranio_nb
-from cranio_nb.cli.doctor import examine
+from cranio_nb.cli.examination import examine
 from cranio_nb.cli.main import main
 from cranio_nb.output.design_folder import FILES
 from data_synth import phantom_case

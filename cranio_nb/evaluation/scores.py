@@ -62,6 +62,10 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
     InputRefused
         If the three do not share one grid (GridMismatch), or the skull has no bone (NoBone).
     """
+    # one grid for all three: files round theirs, and a score must not depend on where a mask was stored
+    check_same_grid(patch, skull, "patch and skull")
+    check_same_grid(truth, skull, "truth and skull")
+    patch, truth = skull.with_voxels(patch.voxels), skull.with_voxels(truth.voxels)
     distances = surface_distances(patch, truth)
     return Score(
         dice=dice(patch, truth),

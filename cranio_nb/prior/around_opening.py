@@ -92,7 +92,7 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
 
 
 def _untrusted(radii: Array, radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mask:
-    """Which of the `vault_rays` lead into holes or their rims; `radii` (2, m) of the skull, `middle` of the mean head."""
+    """Which of the `vault_rays` lead into holes or their rims; `radii` (2, m) of the skull, `middle` of the mean."""
     hole = _rays_through(radius_map, frame, middle)
     return rays_near(hole, _RIM_MM) | rays_near(rays_without_bone(radii) & ~hole, _FREE_RIM_MM)
 

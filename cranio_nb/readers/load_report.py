@@ -17,7 +17,8 @@ class Finding:
     code : str
         Stable CamelCase name, e.g. ``"GantryTilt"``.
     severity : {"info", "corrected", "warning"}
-        "info": chosen or skipped, nothing changed. "corrected": the data was changed to be right. "warning": look.
+        "info": chosen or skipped, nothing changed. "corrected": the data was changed to be right. "warning":
+        to be checked by a person.
     message : str
         One plain sentence.
     values : dict
