@@ -57,10 +57,23 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
     skull : Volume
         Bool mask (P, R, C) of the skull with the hole.
 
+    Returns
+    -------
+    Score
+
     Raises
     ------
     InputRefused
         If the three do not share one grid (GridMismatch), or the skull has no bone (NoBone).
+
+    Examples
+    --------
+    >>> grid = Volume(np.zeros((4, 9, 9), bool), np.eye(4))
+    >>> truth, patch, skull = grid.voxels.copy(), grid.voxels.copy(), grid.voxels.copy()
+    >>> truth[:, 2:8, :], patch[:, 2:6, :], skull[:, 0, :] = True, True, True
+    >>> found = score(grid.with_voxels(patch), grid.with_voxels(truth), grid.with_voxels(skull))
+    >>> round(found.dice, 9), round(found.volume_ratio, 3), found.overlap
+    (0.8, 0.667, 0)
     """
     # one grid for all three: files round theirs, and a score must not depend on where a mask was stored
     check_same_grid(patch, skull, "patch and skull")
@@ -79,7 +92,24 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
 
 
 def dice(patch: Volume, truth: Volume) -> float:
-    """Dice similarity, 2 |A and B| / (|A| + |B|), 0 to 1; 1 for two empty masks."""
+    """Dice similarity, 2 |A and B| / (|A| + |B|).
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        0 to 1; 1 for two empty masks.
+
+    Examples
+    --------
+    >>> a, b = (Volume(np.arange(4).reshape(1, 1, 4) < n, np.eye(4)) for n in (1, 3))
+    >>> dice(a, b)
+    0.5
+    """
     check_same_grid(patch, truth, "patch and truth")
     return _dice(patch.voxels, truth.voxels)
 
@@ -93,6 +123,11 @@ def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach_mm: float 
         Bool masks (P, R, C) on one grid.
     reach_mm : float
         Between voxel centres.
+
+    Returns
+    -------
+    float
+        0 to 1.
 
     Raises
     ------
@@ -111,7 +146,18 @@ def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach_mm: float 
 
 
 def volume_ratio(patch: Volume, truth: Volume) -> float:
-    """Volume of the patch over the volume of the truth; 1 for two empty masks, inf where only the truth is empty."""
+    """Volume of the patch over the volume of the truth.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        1 for two empty masks, inf where only the truth is empty.
+    """
     check_same_grid(patch, truth, "patch and truth")
     found, wanted = int(np.count_nonzero(patch.voxels)), int(np.count_nonzero(truth.voxels))
     if wanted == 0:
@@ -120,24 +166,67 @@ def volume_ratio(patch: Volume, truth: Volume) -> float:
 
 
 def overlap(patch: Volume, skull: Volume) -> int:
-    """Number of voxels that are both patch and bone."""
+    """Number of voxels that are both patch and bone.
+
+    Parameters
+    ----------
+    patch, skull : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    int
+    """
     check_same_grid(patch, skull, "patch and skull")
     box = _box(patch.voxels)
     return int(np.count_nonzero(patch.voxels[box] & skull.voxels[box]))
 
 
 def hd95(patch: Volume, truth: Volume) -> float:
-    """95th percentile of the `surface_distances`, mm: the Hausdorff distance without its outliers."""
+    """95th percentile of the `surface_distances`: the Hausdorff distance without its outliers.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _percentile95(surface_distances(patch, truth))
 
 
 def assd(patch: Volume, truth: Volume) -> float:
-    """Mean of the `surface_distances`, mm: average symmetric surface distance."""
+    """Mean of the `surface_distances`: average symmetric surface distance.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _mean(surface_distances(patch, truth))
 
 
 def rmse(patch: Volume, truth: Volume) -> float:
-    """Root mean square of the `surface_distances`, mm."""
+    """Root mean square of the `surface_distances`.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _root_mean_square(surface_distances(patch, truth))
 
 

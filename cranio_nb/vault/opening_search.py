@@ -97,6 +97,13 @@ def find_openings(bone: Volume, *, min_diameter_mm: float = 8.0) -> tuple[Openin
     InputRefused
         ``OpeningLeavesImage`` when an opening reaches the edge of the image, so that part of its rim is missing;
         ``NoVault`` when the mask holds no skull vault.
+
+    Examples
+    --------
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "multiple", 0)
+    >>> len(find_openings(Volume(case.bone, case.affine)))
+    3
     """
     outermost = measure_outermost_bone(bone)
     groups = [rays for rays in open_rays(outermost, min_diameter_mm) if not _is_thin_bone(bone, outermost, rays)]
