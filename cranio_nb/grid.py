@@ -169,5 +169,5 @@ def move_affine(affine: Affine, start: ArrayLike, step: ArrayLike = 1) -> Affine
     """
     moved = affine.copy()
     moved[:3, 3] = np.asarray(start, float) @ affine[:3, :3].T + affine[:3, 3]
-    moved[:3, :3] *= step
+    moved[:3, :3] *= np.asarray(step, float)
     return moved

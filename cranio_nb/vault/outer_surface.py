@@ -53,7 +53,8 @@ class OuterSurface:
         -------
         ndarray of bool, shape (n, n)
         """
-        return np.isfinite(self.normals).all(axis=-1)
+        known: NDArray[np.bool_] = np.isfinite(self.normals).all(axis=-1)
+        return known
 
     @cached_property
     def interior(self) -> Array:
