@@ -85,6 +85,7 @@ def distance_to_voxels(points: NDArray[np.float64], mask: Volume) -> NDArray[np.
     surface = np.argwhere(mask.voxels & ~ndimage.binary_erosion(mask.voxels))
     if not len(surface):
         raise InputRefused("NoBone", "The bone mask is empty; a gap needs bone.")
+    # the boxes of the nearest surface voxels reach half a voxel to each side
     at = mask.to_voxel(points)
     _, near = cKDTree(mask.to_world(surface)).query(points, k=np.arange(1, 1 + min(8, len(surface))))
     step = at[:, None] - surface[near]

@@ -138,6 +138,7 @@ def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach_mm: float 
     check_same_grid(patch, skull, "patch and skull")
     if not skull.voxels.any():
         raise InputRefused("NoBone", "The skull mask is empty; the border Dice needs bone.")
+    # only voxels of either mask count
     box = _box(patch.voxels, truth.voxels)
     a, b = patch.voxels[box], truth.voxels[box]
     near = _near_bone(skull, np.argwhere(a | b) + [s.start for s in box], reach_mm)
@@ -273,11 +274,13 @@ def _within(points: NDArray, others: NDArray, reach: float) -> NDArray[np.bool_]
 
     A thinned set of the others settles most points: all of them lie within a cell's diagonal of it.
     """
+    # one point of each cell
     cell = reach / 5
     _, some = np.unique(np.floor(others / cell).astype(int), axis=0, return_index=True)
     slack = cell * np.sqrt(3)
     far = cKDTree(others[some]).query(points, distance_upper_bound=reach + slack)[0]
     within = far <= reach
+    # the rest is asked exactly
     unsure = np.flatnonzero(~within & np.isfinite(far))
     bound = reach * (1 + 1e-9) + 1e-9  # the tree's bound is exclusive
     within[unsure] = np.isfinite(cKDTree(others).query(points[unsure], distance_upper_bound=bound)[0])

@@ -107,6 +107,7 @@ def check_mesh(mesh: Mesh) -> MeshReport:
     >>> check_mesh(tetrahedron).sound, check_mesh(Mesh(tetrahedron.vertices, tetrahedron.faces[1:])).n_open_edges
     (True, 3)
     """
+    # what needs closed walls or finite vertices is not measured without them
     finite = bool(np.isfinite(mesh.vertices).all())
     first, n_faces_at = _edges(mesh)
     fans, used = _fans(mesh, first)
@@ -180,6 +181,7 @@ def _flipped_edges(mesh: Mesh) -> int:
 
 def _fans(mesh: Mesh, first: NDArray[np.intp]) -> tuple[int, int]:
     """Number of fans of faces around vertices, and of vertices in use; a fan is a run of faces joined by edges."""
+    # two faces on an edge share both of its ends: their corners there belong to one fan
     edge = np.flatnonzero(first != np.arange(len(first)))
     twin = first[edge]
     start, end = edge, _next_corner(edge)

@@ -128,6 +128,7 @@ def measure_outermost_bone(bone: Volume) -> OutermostBone:
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / _STEP_DEG))
     grid = RayGrid(head_centre(bone), head_axes(bone), np.radians(_STEP_DEG), 2 * half + 1)
     directions = grid.directions
+    # outwards: the last bone met stays
     start, step = bone.to_voxel(grid.centre), bone.steps(directions)
     radius, last_inside = np.full(directions.shape[:2], np.nan), np.zeros(directions.shape[:2])
     for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM):
@@ -192,6 +193,7 @@ def _is_thin_bone(bone: Volume, outermost: OutermostBone, rays: NDArray[np.bool_
     if diameter > _THIN_HOLE_MM:
         return False
     rim = ndimage.binary_dilation(rays, iterations=2) & np.isfinite(outermost.radius)
+    # how much bone lies on the rays of the rim
     depths = np.arange(-14.0, 1.5, 0.25)
     lengths = (outermost.radius[rim][:, None] + depths)[..., None]
     points = outermost.grid.centre + outermost.grid.directions[rim][:, None, :] * lengths

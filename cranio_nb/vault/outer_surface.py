@@ -53,8 +53,7 @@ class OuterSurface:
         -------
         ndarray of bool, shape (n, n)
         """
-        known: NDArray[np.bool_] = np.isfinite(self.normals).all(axis=-1)
-        return known
+        return np.asarray(np.isfinite(self.normals).all(axis=-1))
 
     @cached_property
     def interior(self) -> Array:
@@ -92,6 +91,7 @@ class OuterSurface:
         normals : ndarray, shape (k, 3)
             Of the surface where the points' rays meet it.
         """
+        # radius and normal where each point's own ray meets the surface
         at = self.grid.locate(offsets)
         radius, *normal = (
             ndimage.map_coordinates(values, at, order=1, cval=np.nan)

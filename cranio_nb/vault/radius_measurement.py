@@ -129,6 +129,7 @@ def _usual_thickness(thickness: NDArray[np.float64], around: NDArray[np.bool_]) 
     v, u = np.nonzero(around)
     if len(v) < 10:
         return np.full(thickness.shape, np.nanmedian(thickness))
+    # thickness = a + b v + c u
     basis = np.stack([np.ones(len(v)), v, u], axis=1).astype(float)
     plane = reweighted_fit(
         basis, thickness[v, u], lambda off: huber_weights(off, spread(off) + 1e-6), start=np.ones(len(v)), n_iter=5

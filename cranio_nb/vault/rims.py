@@ -140,6 +140,7 @@ def share_tangents(tangents: NDArray[np.float64], sigma: float) -> NDArray[np.fl
     if sigma <= 0 or not known.any():
         return tangents
     width = (min(2 * int(np.ceil(sigma)) + 1, int(known.sum())), *[1] * (tangents.ndim - 1))
+    # among known slices the median, over all of them the Gaussian, in which unknown ones weigh nothing
     shared = np.zeros(tangents.shape)
     shared[known] = ndimage.median_filter(tangents[known], size=width, mode="nearest")
     shared = ndimage.gaussian_filter1d(shared, sigma, axis=0, mode="constant")

@@ -158,6 +158,7 @@ def profile(radius_map: RadiusMap, fan: Fan) -> RayProfile:
     at = radius_map.grid.locate(fan.directions)
     inside = ((at >= 0) & (at <= radius_map.grid.n - 1)).all(axis=0)
     hole = ndimage.map_coordinates(radius_map.hole.astype(np.float32), at, order=1) > 0.5
+    # a ray between known and unknown ones is unknown
     known = np.isfinite(radius_map.outer)
     seen = inside & (ndimage.map_coordinates(known.astype(np.float32), at, order=1) > 0.99)
     outer, inner = (
