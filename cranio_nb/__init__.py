@@ -60,6 +60,7 @@ _HOMES = {
     "find_openings": "vault.opening_search",
     "design": "methods.design",
     "add_method": "methods.catalogue",
+    "Piece": "methods.piece",
     "check_mesh": "geometry.mesh_check",
     "score": "evaluation.scores",
     "run_design": "pipeline.run",

@@ -125,7 +125,7 @@ ways = {
 designs = {name: cn.design(bone, openings, **options) for name, options in ways.items()}
 
 # %%
-true = against_truth.true_prosthesis(case.truth, bone, openings[0])
+true = against_truth.true_prosthesis(case.truth, bone, openings[0].head_centre)
 seen = {name: against_truth.against(design, true, bone) for name, design in designs.items()}
 
 

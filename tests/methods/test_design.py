@@ -44,7 +44,7 @@ METHODS = {
     # its fixed pressure is made for other pixels; thinning is not symmetric
     "paper": Method(
         "slicewise",
-        (0.67, 0.76, 0.81),
+        (0.67, 0.66, 0.81),
         mirror=0.82,
         stray=50.0,
         nested=0.6,
