@@ -17,7 +17,7 @@ from ..output.files import json_text
 from ..readers import LoadReport
 
 if TYPE_CHECKING:
-    from ..evaluation.paper_tables import OpeningSize
+    from ..evaluation.opening_size import OpeningSize
     from ..pipeline.run import RunResult
 
 _PIPED_WIDTH = 110  # columns of a table that no terminal shows

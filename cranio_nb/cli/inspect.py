@@ -12,7 +12,7 @@ from ..readers import read_ct
 from .options import PATH, allow, as_json, debug, mask, threshold
 
 if TYPE_CHECKING:
-    from ..evaluation.paper_tables import OpeningSize
+    from ..evaluation.opening_size import OpeningSize
 
 
 @click.command()
@@ -30,7 +30,7 @@ def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, .
       cranio-nb inspect scans/head_ct
       cranio-nb inspect skull.nrrd --mask --json
     """
-    from ..evaluation.paper_tables import measure_opening
+    from ..evaluation.opening_size import measure_opening
     from ..output.design_folder import load_record
     from ..stages.segmentation import bone_of
     from ..vault.opening_search import find_openings

@@ -6,10 +6,11 @@ Frame: world mm (LPS).
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 from skimage.measure import marching_cubes
 
+from ..geometry.slice_distance import plane_distances
+from ..grid import move_affine
 from ..mesh import Mesh
 from ..volume import Volume
 
@@ -70,30 +71,13 @@ def _field(part: Volume) -> Volume:
     padded = np.pad(part.voxels, [(0, int(-n % b)) for n, b in zip(part.shape, block, strict=True)])
     p, r, c = (n // b for n, b in zip(padded.shape, block, strict=True))
     share = padded.reshape(p, block[0], r, block[1], c, block[2]).mean(axis=(1, 3, 5), dtype=np.float32)
-    affine = part.affine @ _index_map(block, (block - 1) / 2)  # coarse voxels in the middle of their blocks
+    affine = move_affine(part.affine, (block - 1) / 2, block)  # coarse voxels in the middle of their blocks
     # planes farther apart than that: distances to their outlines, drawn out linearly between them
     split = max(1, round(float(part.spacing[0] * block[0]) / _COARSE_MM))
     field = share - np.float32(_BONE_SHARE)
     if split > 1:
-        field = ndimage.zoom(_plane_distances(share > _BONE_SHARE), (((p - 1) * split + 1) / p, 1, 1), order=1)
-        affine = affine @ _index_map((1 / split, 1, 1), (0, 0, 0))
+        distances = plane_distances(share > _BONE_SHARE, _FAR_PX).astype(np.float32)
+        field = ndimage.zoom(distances, (((p - 1) * split + 1) / p, 1, 1), order=1)
+        affine = move_affine(affine, (0, 0, 0), (1 / split, 1, 1))
     sigma = (0.7, 0.7, 0.7) if split == 1 else (0.8 * split, 1.3, 1.3)
     return Volume(ndimage.gaussian_filter(field, sigma), affine)
-
-
-def _index_map(scale: ArrayLike, shift: ArrayLike) -> NDArray[np.float64]:
-    """Matrix that takes the index i of one grid to ``scale * i + shift`` of another, shape (4, 4)."""
-    out = np.diag([*np.asarray(scale, float), 1.0])
-    out[:3, 3] = shift
-    return out
-
-
-def _plane_distances(inside: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Signed distance to the outline within each plane, px, positive inside, cut off at `_FAR_PX`."""
-    far = np.float32(_FAR_PX)
-    out = np.empty(inside.shape, np.float32)
-    for k, plane in enumerate(inside):
-        out[k] = ndimage.distance_transform_edt(plane) if plane.any() else 0
-        out[k] -= ndimage.distance_transform_edt(~plane) if not plane.all() else 0
-        out[k] = np.clip(out[k] if plane.any() else -far, -far, far)
-    return out

@@ -41,8 +41,9 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..prior import file as prior_file
-from ..prior.shape_prior import Prior, expect
+from ..prior.around_opening import predict_around
+from ..prior.file import load_prior
+from ..prior.shape_prior import Prior
 from ..vault import radius_measurement, radius_voxels, symmetry
 from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane
@@ -121,7 +122,7 @@ def pieces(
     InputRefused
         ``NoPrior`` or ``PriorDoesNotFit``.
     """
-    learned = prior_file.load(Path(prior)) if prior else None
+    learned = load_prior(Path(prior)) if prior else None
     plane, found = _symmetry(bone, openings[0]) if mirror_mm else (None, {"unused": "not asked for"})
     record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
     lengths = {"second_mm": second_mm, "third_mm": third_mm, "mirror_mm": mirror_mm}
@@ -268,7 +269,7 @@ def _other_side(bone: Volume, vault: RadiusMap, plane: SymmetryPlane) -> tuple[A
 
 def _expected(bone: Volume, vault: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
     """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
-    predicted = expect(learned, bone, vault)
+    predicted = predict_around(learned, bone, vault)
     if not (np.isfinite(predicted.outer) & vault.hole).any():
         return None
     outer, inner = (

@@ -15,7 +15,7 @@ from ..drawing import figures, palette
 from ..drawing.coarse_skull import skull_surface
 from ..drawing.shading import view_axes
 from ..evaluation.against_truth import SIDES
-from ..evaluation.paper_tables import OpeningSize, measure_opening
+from ..evaluation.opening_size import OpeningSize, measure_opening
 from ..mesh import Mesh
 from ..pipeline.compare import MEASURES, Comparison
 from .comparison_tables import tables

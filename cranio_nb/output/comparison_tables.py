@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..evaluation.paper_tables import measure_opening
+from ..evaluation.opening_size import measure_opening
 from ..pipeline.compare import MEASURES, Comparison, records
 from .design_folder import load_record, versions
 

@@ -14,12 +14,12 @@ from typing import Any
 
 from ..evaluation.paper_tables import balloon_ranges, count_statuses
 from ..geometry.mesh_check import MeshReport, check_mesh
-from ..implant.workshop import implant_data
+from ..grid import AxisOrder
+from ..implant.mass import weigh_implant
 from ..methods.catalogue import default_options, method_names
 from ..pipeline.run import RunResult
 from ..prosthesis import Prosthesis
 from ..readers import LoadReport
-from ..volume import AxisOrder
 from . import files
 from .mesh_files import write_mesh
 from .nifti_files import write_nifti
@@ -131,7 +131,7 @@ def made_record(made: Prosthesis) -> dict[str, Any]:
         "slices": slices,
         "slice_counts": count_statuses(slices),
         "balloons": balloon_ranges(slices),
-        "implant": implant_data(made.mesh),
+        "implant": weigh_implant(made.mesh),
         "versions": versions(),
     }
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..drawing import palette
 from ..evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES, STATUSES, balloon_ranges, count_statuses
-from ..implant.workshop import implant_data
+from ..implant.mass import weigh_implant
 from ..pipeline.run import RunResult, parameters_used
 from ..prosthesis import DistanceStats
 from .design_pictures import distance_shots, slice_shots, view_shots
@@ -41,7 +41,7 @@ def report_page(result: RunResult) -> str:
         slices=slices,
         counts=count_statuses(slices),
         statuses=STATUSES,
-        implant=implant_data(made.mesh),
+        implant=weigh_implant(made.mesh),
         views=view_shots(result),
         pictures=slice_shots(result),
         balloons=balloon_tables(result),

@@ -7,7 +7,7 @@ import numpy as np
 from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
 from ..evaluation.against_truth import TruthCheck
-from ..evaluation.paper_tables import telling_slices
+from ..evaluation.paper_tables import pick_slices
 from ..methods.slicewise.slices import SlicedDesign, SliceResult
 from ..pipeline.run import RunResult
 from ..prosthesis import INNER, OUTER
@@ -62,7 +62,7 @@ def slice_shots(result: RunResult) -> list[Shot]:
         if part is None:
             continue
         at = f"opening {number_of}, slice" if len(first) > 1 else "slice"
-        for i in telling_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
+        for i in pick_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
             s, title = part.slices[i], f"{at} {i + 1} of {len(part.slices)}"
             figure = figures.slice_figure(part, s, result.case.bone, made.patch, skeleton=skeleton)
             shots.append(shot(figure, alt=_slice_alt(title, s), caption=_slice_caption(title, s)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..volume import Affine, AxisOrder
+from ..grid import Affine, AxisOrder
 
 
 @dataclass(frozen=True)

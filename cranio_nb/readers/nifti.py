@@ -11,7 +11,7 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from ..errors import InputRefused
-from ..volume import Affine
+from ..grid import Affine
 from .load_report import Finding
 from .stored_image import Image, check_rest, check_shape, no_orientation, read_exactly
 

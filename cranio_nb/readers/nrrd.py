@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
-from ..volume import Affine
+from ..grid import Affine
 from .load_report import Finding
 from .stored_image import Image, check_rest, check_shape, no_orientation, read_exactly
 

@@ -11,7 +11,7 @@ from typing import BinaryIO
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
-from ..volume import Affine
+from ..grid import Affine
 from .load_report import Finding
 
 MAX_VOXELS = 2**30

@@ -52,14 +52,15 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 # ## 1. Between the curves
 #
 # We run the paper's own preset and look at one slice. It leaves out 4.5 mm of boundary at the cut, ten points on the
-# paper's pixels of 0.45 mm. Over what length the tangent is fitted the paper does not say: we take ten points of ours,
-# for a line through fewer would jump (lesson 03). The outline goes along the outer curve and *back* along the
-# inner one. Inside it, minus the bone, is the patch. `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the
-# other: crumbs that touch only one of them are dropped.
+# paper's pixels of 0.45 mm. Over what length the tangent is fitted the paper does not say: the preset takes ten points
+# of ours, for a line through fewer would jump (lesson 03).
+#
+# The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
+# `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the other: crumbs that touch only one of
+# them are dropped.
 
 # %% tags=["nbval-check-output"]
-preset = {"preset": "paper", "reach_mm": 10 * px}
-paper = cn.design(bone, openings, **preset)
+paper = cn.design(bone, openings, preset="paper")
 made = paper.working[0].slices  # the slices of the first hole
 bridged = [s for s in made if s.status == "balloon"]
 one = bridged[len(bridged) // 2]
@@ -166,13 +167,13 @@ panel
 
 # %% tags=["nbval-check-output"]
 own_k = cn.design(
-    bone, openings, **preset, pressure_mm=None
+    bone, openings, preset="paper", pressure_mm=None
 )  # the pressure from the end tangents
 balloons = [s for s in own_k.record["slices"] if s["status"] == "balloon"]
 for s in balloons[:2] + balloons[-3:]:
-    at = s["plane"] + first
-    area, theta1 = own_k.patch.voxels[at].sum() * px**2, s["theta1"][0]
-    print(f"slice {at}: patch of {area:.0f} mm2, outer theta1 {theta1:.0f} degrees")
+    where = s["plane"] + first
+    area, theta1 = own_k.patch.voxels[where].sum() * px**2, s["theta1"][0]
+    print(f"slice {where}: patch of {area:.0f} mm2, outer theta1 {theta1:.0f} degrees")
 
 # %% [markdown]
 # <details>
@@ -204,7 +205,7 @@ skips = {"skip 10 points = 9 mm": {"skip_mm": 10 * px}, "skip 4.5 mm": {}}
 pressures = {"the paper's k": {}, "k from the ends": {"pressure_mm": None}}
 for skip, shorter in skips.items():
     for k, pressure in pressures.items():
-        made = cn.design(bone, openings, **preset, **shorter, **pressure)
+        made = cn.design(bone, openings, preset="paper", **shorter, **pressure)
         if case.truth is not None:
             s = cn.score(made.patch, case.truth, bone)
             print(f"{skip:21} {k:15} Dice {s.dice:.3f}, mean distance {s.assd:.2f} mm")

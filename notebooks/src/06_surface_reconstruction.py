@@ -26,7 +26,7 @@
 import numpy as np
 
 import cranio_nb as cn
-from cranio_nb.implant import workshop
+from cranio_nb.implant.mass import DENSITIES, weigh_implant
 from cranio_nb.stages import surface_reconstruction
 from cranio_nb.teaching import check, classroom, pictures, widgets
 
@@ -153,10 +153,10 @@ print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
 # another question: a rim that widens inwards holds it back.
 
 # %% tags=["nbval-check-output"]
-data = workshop.implant_data(smooth)
+data = weigh_implant(smooth)
 print(f"{data.volume_cm3:.1f} cm3")
 for material, mass in data.mass_g.items():
-    print(f"{material:10} {workshop.DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
+    print(f"{material:10} {DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
 
 # %% tags=["nbval-check-output"]
 folder = classroom.scratch_folder()

@@ -42,7 +42,7 @@ case = classroom.load("class", needs_truth=True)
 bone, truth = cn.segment(case.ct), case.truth
 openings = cn.find_openings(bone)
 made = cn.design(bone, openings)
-seen = against_truth.check_truth(made, truth, bone, openings[0])
+seen = against_truth.check_truth(made, truth, bone, openings[0].head_centre)
 
 # %% [markdown]
 # ## 1. Table 3: distances of nodes
@@ -206,9 +206,9 @@ check.exercise("7.2", mirrored)
 #
 # | paper | code | unit |
 # |---|---|---|
-# | distance field | `scores.surface_distance` | mm |
-# | Min., Max., Mean, StD. | `scores.distance_stats` | mm or voxels |
-# | in voxel units | `scores.in_voxels` | voxels |
+# | distance field | `mesh_distances.surface_distance` | mm |
+# | Min., Max., Mean, StD. | `mesh_distances.distance_stats` | mm or voxels |
+# | in voxel units | `mesh_distances.in_voxels` | voxels |
 # | similarity by reflection | section 3 above | |
 #
 # **Further reading.** Maier-Hein and others, *Metrics reloaded*, Nature Methods 21 (2024). Li and others, *AutoImplant

@@ -48,7 +48,7 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 case = classroom.load("class", needs_truth=True)
 bone, px = cn.segment(case.ct), case.px
 openings = cn.find_openings(bone)
-true = against_truth.true_prosthesis(case.truth, bone, openings[0])
+true = against_truth.true_prosthesis(case.truth, bone, openings[0].head_centre)
 
 # %% [markdown]
 # ## 1. The hull: a rubber sheet

@@ -50,7 +50,7 @@ from cranio_nb.vault import radius_measurement
 case = classroom.load("class", needs_truth=True)
 bone = cn.segment(case.ct)
 openings = cn.find_openings(bone)
-true = against_truth.true_prosthesis(case.truth, bone, openings[0])
+true = against_truth.true_prosthesis(case.truth, bone, openings[0].head_centre)
 
 # %% [markdown]
 # ## 1. The vault as a map

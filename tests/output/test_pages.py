@@ -6,7 +6,7 @@ import pytest
 from jinja2 import UndefinedError
 
 from cranio_nb.drawing import figures
-from cranio_nb.evaluation.paper_tables import measure_opening
+from cranio_nb.evaluation.opening_size import measure_opening
 from cranio_nb.output import pages
 
 

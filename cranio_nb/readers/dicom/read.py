@@ -12,7 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputRefused
-from ...volume import Affine, Volume, canonical_order
+from ...grid import Affine, canonical_order
+from ...volume import Volume
 from ..hu_checks import AIR_HU, check_finite, check_hu, clear_padding, is_mask
 from ..load_report import Finding, LoadReport
 from ..regrid import resample_planes, slide_slices

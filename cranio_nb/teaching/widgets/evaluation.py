@@ -15,7 +15,7 @@ from ...drawing.canvas_axes import Chart
 from ...drawing.palette import SKY, VERMILLION
 from ...drawing.shading import Solid, render
 from ...errors import InputRefused
-from ...evaluation import scores
+from ...evaluation import mesh_distances
 from ...evaluation.against_truth import SIDES
 from ...prosthesis import Prosthesis
 from .controls import Choice, Slider, View
@@ -89,7 +89,7 @@ def map_distances(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> Dista
     own, other = prosthesis.surface(side), truth.surface(side)
     if not len(own.faces) or not len(other.faces):
         raise InputRefused("EmptyMesh", "The prosthesis or the truth lacks its outer or inner side.")
-    off = scores.surface_distance(own.vertices, other)
+    off = mesh_distances.surface_distance(own.vertices, other)
     towards = own.area_vectors.sum(axis=0)
     px = pixel_to_fit(own, towards, VIEW - 60)
     values = np.repeat(off[:, None], 3, axis=1)  # mm in place of colours

@@ -118,8 +118,8 @@ def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
     -------
     Stack
     """
-    own: dict[str, Any] = {"pressure_mm": None} if pressure == PRESSURES[0] else {}
-    made = design(bone, [opening], method="slicewise", preset="paper", **own)
+    options: dict[str, Any] = {"pressure_mm": None} if pressure == PRESSURES[0] else {}
+    made = design(bone, [opening], method="slicewise", preset="paper", **options)
     (sliced,) = made.working
     assert made.patch is not None
     first = round(float(bone.to_voxel(sliced.frames[0, 0])[0]))

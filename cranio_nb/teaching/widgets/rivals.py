@@ -15,14 +15,15 @@ from ...drawing.canvas import Canvas
 from ...drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY, VERMILLION, rgb_shares
 from ...drawing.pixels import Window, plain, tinted
 from ...drawing.shading import Solid, render, view_axes
-from ...evaluation import scores
+from ...evaluation import mesh_distances
 from ...methods.you import mesh_to_voxels
 from ...methods.you import method as you
 from ...opening import Opening
 from ...prosthesis import OUTER, Prosthesis
 from ...vault import radius_measurement, symmetry
+from ...vault.outer_surface import OuterSurface, measure_outer_surface
 from ...vault.ray_grid import RadiusMap
-from ...vault.symmetry import OuterSurface, SymmetryPlane
+from ...vault.symmetry import SymmetryPlane
 from ...volume import Volume
 from .controls import Slider, View
 from .panel import Panel
@@ -85,7 +86,8 @@ def _flat_fill(
     made = you.fill_between(bone, opening, you.find_guides(vault, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
     patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
-    off = np.zeros(0) if truth is None else scores.surface_distance(made.outer.mesh.vertices, truth.surface(OUTER))
+    nodes = made.outer.mesh.vertices
+    off = np.zeros(0) if truth is None else mesh_distances.surface_distance(nodes, truth.surface(OUTER))
     return FlatFill(made, _from_outside(made, opening.direction), patch, off)
 
 
@@ -147,7 +149,7 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
         Controls ``turn_deg``, ``lean_deg`` and ``shift_mm``.
     """
     found = symmetry.find_symmetry_plane(bone, opening.head_centre)
-    surface = symmetry.measure_outer_surface(bone, opening.head_centre)
+    surface = measure_outer_surface(bone, opening.head_centre)
     plane = sum(opening.planes) // 2
     controls = (
         Slider("turn_deg", "turned about the upright axis (degrees)", -10.0, 10.0, 0.0, 0.5),
@@ -179,7 +181,7 @@ def move_plane(
     -------
     SymmetryPlane
     """
-    _, back, up = surface.axes
+    _, back, up = surface.grid.axes
     normal = plane.normal + np.tan(np.radians(turn_deg)) * back + np.tan(np.radians(lean_deg)) * up
     normal = normal / np.linalg.norm(normal)
     return replace(plane, point=plane.point + shift_mm * normal, normal=normal)
@@ -191,7 +193,7 @@ def _mirror_view(
     """Bone and mirror image in a slice, and the residual over the vault."""
     canvas = Canvas(2 * _SIDE, _SIDE)
     canvas.inlay(_mirrored_slice(bone, mirror, plane), 0, 0)
-    residual = np.abs(symmetry.residuals(surface, mirror)).astype(np.float32)
+    residual = np.abs(symmetry.mirror_residuals(surface, mirror)).astype(np.float32)
     side = _SIDE - 90
     rows = np.linspace(0, len(residual) - 1, side).round().astype(int)
     left, top = _SIDE + 45, 34

@@ -165,7 +165,7 @@ Measured = tuple[tuple[float, ...], DistanceMap]
 def _measured(bone: Volume, truth: Volume, openings: tuple[Any, ...], options: dict[str, Any]) -> Measured:
     """Measures of one design in the order of `_MEASURES`, and its map of distances."""
     made = design(bone, openings, method="slicewise", **options)
-    check = check_truth(made, truth, bone, openings[0])
+    check = check_truth(made, truth, bone, openings[0].head_centre)
     return _measures(check), map_distances(made, check.prosthesis, OUTER)
 
 

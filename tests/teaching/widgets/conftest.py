@@ -45,4 +45,4 @@ def design(skull, openings):
 
 @pytest.fixture(scope="session")
 def true(phantom, skull, openings):
-    return against_truth.true_prosthesis(skull().with_voxels(phantom().implant), skull(), openings()[0])
+    return against_truth.true_prosthesis(skull().with_voxels(phantom().implant), skull(), openings()[0].head_centre)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cranio_nb.evaluation import scores
+from cranio_nb.evaluation import mesh_distances
 from cranio_nb.prosthesis import INNER
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets.evaluation import map_distances
@@ -11,7 +11,7 @@ from cranio_nb.teaching.widgets.evaluation import map_distances
 
 def test_the_evaluation_line_counts_nodes(static, design, true):
     panel = widgets.distances(design, true).set(side="inner", limit_mm=0.4)
-    distances = scores.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
+    distances = mesh_distances.surface_distance(design.surface(INNER).vertices, true.surface(INNER))
     assert f"{100 * (distances <= 0.4).mean():.0f} % of the nodes lie within 0.4 mm" in panel.view.line
     assert f"max {distances.max():.2f} mm" in panel.view.line
 

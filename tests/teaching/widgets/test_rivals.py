@@ -3,12 +3,13 @@
 import numpy as np
 import pytest
 
-from cranio_nb.evaluation import scores
+from cranio_nb.evaluation import mesh_distances
 from cranio_nb.methods.you import method as you
 from cranio_nb.prosthesis import OUTER
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets.rivals import move_plane
 from cranio_nb.vault import radius_measurement, symmetry
+from cranio_nb.vault.outer_surface import measure_outer_surface
 
 
 def test_guiding_points_say_what_the_method_fills(static, skull, openings, true):
@@ -16,7 +17,7 @@ def test_guiding_points_say_what_the_method_fills(static, skull, openings, true)
     made = you.fill_between(
         skull(), openings()[0], you.find_guides(radius_measurement.measure_around(skull(), openings()[0]), 8)
     )
-    off = scores.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
+    off = mesh_distances.surface_distance(made.outer.mesh.vertices, true.surface(OUTER))
     assert panel.view.line.startswith("8 guiding points: ")
     assert f"{off.mean():.2f} mm from the true surface on average, {off.max():.2f} mm at most" in panel.view.line
 
@@ -38,6 +39,6 @@ def test_the_found_plane_has_the_least_residual(static, skull, openings):
 
 def test_a_plane_shifted_by_one_mm_moves_the_image_by_two(skull, openings):
     centre = openings()[0].head_centre
-    found, surface = symmetry.find_symmetry_plane(skull(), centre), symmetry.measure_outer_surface(skull(), centre)
+    found, surface = symmetry.find_symmetry_plane(skull(), centre), measure_outer_surface(skull(), centre)
     other = move_plane(found, surface, turn_deg=0.0, lean_deg=0.0, shift_mm=1.0)
     np.testing.assert_allclose(other.mirror(centre) - found.mirror(centre), 2 * found.normal, atol=1e-9)
