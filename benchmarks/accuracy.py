@@ -12,7 +12,6 @@ import argparse
 import os
 import time
 from collections import Counter
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +24,7 @@ from cranio_nb.evaluation import scores
 from cranio_nb.evaluation.against_truth import measure_against, table3, true_prosthesis
 from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES
 from cranio_nb.geometry import voxel_pieces
-from cranio_nb.methods import slicewise, thin_plate
+from cranio_nb.methods.design import design
 from cranio_nb.opening import Opening
 from cranio_nb.pipeline.run import design_inside
 from cranio_nb.pipeline.trial import contenders
@@ -64,8 +63,8 @@ def phantom_designs(bone: Volume, openings: tuple[Opening, ...], truth: Prosthes
     """Every method of the catalogue with each of its presets, measured: its name -> what it made."""
     made = {}
     for one in contenders():
-        design = made[one.name] = design_inside(bone, openings, one.method, one.preset, one.options)
-        seen = measure_against(design, truth, bone)
+        made[one.name] = design_inside(bone, openings, one.method, one.preset, one.options)
+        seen = measure_against(made[one.name], truth, bone)
         print_distances(one.name, seen.table3, f"   {seen.score.dice:.3f}  {seen.score.hd95:5.2f}")
     return made
 
@@ -111,35 +110,31 @@ def skullfix(folder: Path) -> None:
     for label, options in (
         ("default, 6 directions", {}),
         ("best single direction", {"directions": 1}),
-        ("axial, as the paper", None),
+        ("axial, as the paper", {"preset": "paper"}),
     ):
         rows = [skullfix_case(case, options) for case in sorted((folder / "skullfix/cases").iterdir())]
         print_scores(label, rows)
     print("\n== SkullFix varied (no truth): openings found, volume, slices")
     for path in sorted((folder / "skullfix/varied").glob("*.nrrd")):
         bone = segment(read_ct(path)[0])
-        made = slicewise.design(bone)
+        made = design(bone)
         volume = made.mesh.volume / 1000
         print(f"   {path.stem}: {volume:.1f} cm3, {dict(Counter(s['status'] for s in made.record['slices']))}")
 
 
-def skullfix_case(case: Path, options: dict[str, Any] | None) -> dict[str, Any]:
+def skullfix_case(case: Path, options: dict[str, Any]) -> dict[str, Any]:
     bone = segment(read_ct(case / "defective.nrrd")[0])
     truth = read_ct(case / "implant.nrrd")[0]
-    return scored(case.name, bone, truth, slicewise.paper_options(bone) if options is None else options)
+    return scored(case.name, bone, truth, **options)
 
 
 def scored(
-    name: str,
-    bone: Volume,
-    truth: Volume,
-    options: dict[str, Any],
-    design: Callable[..., Prosthesis] = slicewise.design,
+    name: str, bone: Volume, truth: Volume, *, method: str = "slicewise", preset: str = "default", **options: Any
 ) -> dict[str, Any]:
     """One row: the scores, the share of slices that were not bridged by themselves, the time."""
     began = time.perf_counter()
     try:
-        made = design(bone, **options)
+        made = design_inside(bone, opening_search.find_openings(bone), method, preset, options)
     except CranioError as error:
         return {"name": name, "failed": error.code}
     seconds = time.perf_counter() - began
@@ -177,8 +172,8 @@ def dryskull(folder: Path) -> None:
             case = data_synth.cut_case(ct.voxels, ct.affine, defect, seed, is_mask=False)
             bone, truth = segment(ct.with_voxels(case.hu)), ct.with_voxels(case.implant)
             thickness = {"thickness": mean_thickness(truth)}
-            for method, design in (("slicewise", slicewise.design), ("thin-plate", thin_plate.design)):
-                rows[method].append(scored(f"{defect[:7]} {seed}", bone, truth, {}, design) | thickness)
+            for method, own in rows.items():
+                own.append(scored(f"{defect[:7]} {seed}", bone, truth, method=method) | thickness)
     for method, own in rows.items():
         print_scores(f"virtual craniectomies, {method}", own)
     print("   thickness of the cut bone, mm:", ", ".join(f"{r['name']} {r['thickness']:.1f}" for r in own))

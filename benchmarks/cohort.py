@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import csv
 import hashlib
+import inspect
 import json
 import os
 import subprocess
@@ -25,7 +26,8 @@ import numpy as np
 
 from cranio_nb import __version__
 from cranio_nb.errors import CranioError
-from cranio_nb.methods.catalogue import METHODS, check_options, default_options
+from cranio_nb.methods.catalogue import check_options, default_options, find_method
+from cranio_nb.methods.transfer import pack_methods, unpack_methods
 from cranio_nb.pipeline.compare import MEASURES, Reference, measure
 from cranio_nb.pipeline.trial import Attempt, Contender, attempt_apart, contenders
 from cranio_nb.stages.segmentation import segment
@@ -98,7 +100,9 @@ def run_cohort(
         for case, left in todo:
             _work(case, left, path, head, attempt)
     else:
-        with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
+        with ProcessPoolExecutor(
+            processes, get_context("spawn"), initializer=unpack_methods, initargs=(pack_methods(),)
+        ) as pool:
             for job in [pool.submit(_work, case, left, path, head, attempt) for case, left in todo]:
                 job.result()
     found = {key_of(row): row for row in read_rows(path)}
@@ -142,9 +146,11 @@ def _identity(contender: Contender) -> tuple[str, str, str]:
 @cache
 def version_of(method: str) -> str:
     """The release, and a digest of the source that a method and the measures load."""
-    modules = [METHODS[method], "cranio_nb.pipeline.compare", "data_synth"]
+    pieces = find_method(method).pieces
+    modules = ["cranio_nb.methods.design", "cranio_nb.pipeline.compare", "data_synth"]
+    modules += [pieces.__module__] if pieces.__module__.startswith("cranio_nb.") else []
     loaded = subprocess.run([sys.executable, "-c", _CODE, *modules], capture_output=True, text=True, check=True)
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(inspect.getsource(pieces).encode())
     for path in loaded.stdout.split("\n"):
         digest.update(Path(path).read_bytes() if path else b"")
     return f"{__version__}+{digest.hexdigest()[:8]}"

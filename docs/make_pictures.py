@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cranio_nb.drawing import figures
 from cranio_nb.drawing.coarse_skull import skull_surface
 from cranio_nb.mesh import Mesh
-from cranio_nb.methods.slicewise import SlicedDesign
+from cranio_nb.methods.slicewise.slices import SlicedDesign
 from cranio_nb.pipeline.run import RunResult, run_design
 from data_synth import phantom_case
 from data_synth.files import write_case

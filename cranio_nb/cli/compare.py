@@ -52,7 +52,7 @@ def compare(
     from ..output.comparison_folder import FILES, write_comparison
     from ..output.staging import staged
     from ..pipeline.compare import compare as run_all
-    from ..pipeline.run import prepare
+    from ..pipeline.preparation import prepare
     from ..pipeline.trial import contenders
     from .console import progress_bar
 

@@ -6,17 +6,15 @@ from pathlib import Path
 
 import click
 
-from ..methods.catalogue import METHODS, PRESETS
+from .method_name import MethodName, check_asked
 from .options import PATH, allow, check_writes, debug, mask, parse_planes, read_params, threshold, truth
 
 
 @click.command()
 @click.argument("scan", type=PATH, metavar="INPUT")
 @click.option("--out", type=PATH, required=True, help="Folder to write to; made if missing.")
-@click.option("--method", type=click.Choice(tuple(METHODS)), default="slicewise", show_default=True)
-@click.option(
-    "--preset", type=click.Choice(PRESETS), default="default", show_default=True, help="paper: as published in 2011."
-)
+@click.option("--method", type=MethodName(), default="slicewise", show_default=True)
+@click.option("--preset", default="default", show_default=True, metavar="NAME", help="paper: as published in 2011.")
 @click.option("--params", type=PATH, metavar="JSON", help="File with options of the method: {name: value, ...}.")
 @click.option("--prior", type=PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate.")
 @click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
@@ -55,6 +53,7 @@ def design(
     from .console import print_result, progress_bar
 
     # everything that can be refused without reading the scan comes first
+    check_asked(method, preset)
     options, between = read_params(method, params), parse_planes(planes)
     options |= {} if prior is None else {"prior": str(prior)}
     learned = options.get("prior")

@@ -15,7 +15,7 @@ from ..drawing.front_end import proxy
 
 _NEEDED = tuple(
     "numpy scipy scikit-image pydicom pyjpegls pylibjpeg-openjpeg pylibjpeg-libjpeg nibabel pynrrd trimesh networkx "
-    "lxml manifold3d click rich matplotlib pillow jinja2".split()
+    "lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
 )
 _OPTIONAL = {
     "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),

@@ -17,7 +17,7 @@ def lessons() -> None:
     Examples:
       cranio-nb lessons build
       cranio-nb lessons html pages
-      cranio-nb lessons grade handed_in/*/04_balloon.ipynb
+      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
     """
 
 
@@ -75,7 +75,7 @@ def grade(notebooks: tuple[Path, ...]) -> None:
 
     \b
     Example:
-      cranio-nb lessons grade handed_in/*/04_balloon.ipynb
+      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
     """
     from ..teaching.build import points
 

@@ -50,7 +50,7 @@ def read_params(method: str, path: Path | None) -> dict[str, Any]:
     Parameters
     ----------
     method : str
-        A key of `catalogue.METHODS`.
+        A name of the catalogue.
     path : Path or None
         File with ``{name: value, ...}``.
 

@@ -10,12 +10,13 @@ from scipy import ndimage
 from skimage.measure import marching_cubes
 
 from ..geometry.slice_distance import plane_distances
+from ..grid import move_affine
 from ..mesh import Mesh
 from ..volume import Volume
 
 _COARSE_MM = 1.3  # voxels of the surface
 _BONE_SHARE = 0.4  # of a coarse voxel, from which it is inside
-_FAR_PX = 8.0  # distances beyond this do not matter
+_FAR_PX = 8  # distances beyond this do not matter
 
 
 def skull_surface(bone: Volume, floor_mm: float = -np.inf) -> Mesh:
@@ -70,12 +71,13 @@ def _field(part: Volume) -> Volume:
     padded = np.pad(part.voxels, [(0, int(-n % b)) for n, b in zip(part.shape, block, strict=True)])
     p, r, c = (n // b for n, b in zip(padded.shape, block, strict=True))
     share = padded.reshape(p, block[0], r, block[1], c, block[2]).mean(axis=(1, 3, 5), dtype=np.float32)
-    coarse = Volume(share, part.affine_from((block - 1) / 2, block))
+    affine = move_affine(part.affine, (block - 1) / 2, block)  # coarse voxels in the middle of their blocks
     # planes farther apart than that: distances to their outlines, drawn out linearly between them
-    split = max(1, round(float(coarse.spacing[0]) / _COARSE_MM))
+    split = max(1, round(float(part.spacing[0] * block[0]) / _COARSE_MM))
     field = share - np.float32(_BONE_SHARE)
     if split > 1:
         distances = plane_distances(share > _BONE_SHARE, _FAR_PX).astype(np.float32)
         field = ndimage.zoom(distances, (((p - 1) * split + 1) / p, 1, 1), order=1)
+        affine = move_affine(affine, (0, 0, 0), (1 / split, 1, 1))
     sigma = (0.7, 0.7, 0.7) if split == 1 else (0.8 * split, 1.3, 1.3)
-    return Volume(ndimage.gaussian_filter(field, sigma), coarse.affine_from((0, 0, 0), (1 / split, 1, 1)))
+    return Volume(ndimage.gaussian_filter(field, sigma), affine)

@@ -43,11 +43,21 @@ class OpeningSize:
 
 
 def measure_opening(opening: Opening) -> OpeningSize:
-    """Measure an opening by its coarse sheet."""
+    """Measure an opening by its coarse sheet.
+
+    Parameters
+    ----------
+    opening : Opening
+
+    Returns
+    -------
+    OpeningSize
+    """
     index = np.argwhere(opening.sheet.voxels)
     points = opening.sheet.to_world(index)
     centre = points.mean(axis=0)
     out = (centre - opening.head_centre) / np.linalg.norm(centre - opening.head_centre)
+    # extents across its direction, along the principal axes, without the outermost percent
     flat = (points - centre)[::3]
     flat = flat - np.outer(flat @ out, out)
     axes = np.linalg.eigh(flat.T @ flat)[1][:, :0:-1].T
@@ -64,7 +74,16 @@ def measure_opening(opening: Opening) -> OpeningSize:
 
 
 def name_place(direction: Sequence[float] | np.ndarray) -> str:
-    """Words for a direction from the head's centre (LPS).
+    """Words for a direction from the head's centre.
+
+    Parameters
+    ----------
+    direction : array_like, shape (3,)
+        Unit vector, LPS.
+
+    Returns
+    -------
+    str
 
     Examples
     --------

@@ -54,13 +54,38 @@ def balloon_ranges(slices: Sequence[dict[str, Any]]) -> dict[str, dict[str, tupl
 
 
 def count_statuses(slices: Sequence[dict[str, Any]]) -> dict[str, int]:
-    """Number of slices of each of the `STATUSES`."""
+    """Number of slices of each of the `STATUSES`.
+
+    Parameters
+    ----------
+    slices : sequence of dict
+        `Prosthesis.record["slices"]`.
+
+    Returns
+    -------
+    dict of str to int
+
+    Examples
+    --------
+    >>> count_statuses([{"status": "hull"}, {"status": "hull"}])
+    {'balloon': 0, 'hull': 2, 'carried': 0, 'skipped': 0}
+    """
     found = Counter(s["status"] for s in slices)
     return {status: found[status] for status in STATUSES}
 
 
 def count_not_converged(slices: Sequence[dict[str, Any]]) -> int:
-    """Number of slices with a balloon that was stopped before it came to rest."""
+    """Number of slices with a balloon that was stopped before it came to rest.
+
+    Parameters
+    ----------
+    slices : sequence of dict
+        `Prosthesis.record["slices"]`.
+
+    Returns
+    -------
+    int
+    """
     return sum(not all(s["converged"]) for s in slices if s["status"] == "balloon")
 
 
@@ -78,7 +103,13 @@ def pick_slices(statuses: Sequence[str], n: int) -> list[int]:
     -------
     list of int
         At most `n` indices, rising.
+
+    Examples
+    --------
+    >>> pick_slices(["balloon"] * 4 + ["hull"] + ["balloon"] * 4, 3)
+    [2, 4, 7]
     """
+    # the middle one of each other kind, then balloons at even steps
     special = []
     for status in STATUSES[1:]:
         at = [i for i, s in enumerate(statuses) if s == status]

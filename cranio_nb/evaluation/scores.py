@@ -15,7 +15,8 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..errors import InputRefused
-from ..volume import Box, Volume, check_same_grid
+from ..grid import Box, box_around
+from ..volume import Volume, check_same_grid
 
 BORDER_MM = 10.0
 """Reach of the border Dice around the bone of the defective skull (AutoImplant challenge 2021)."""
@@ -56,10 +57,23 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
     skull : Volume
         Bool mask (P, R, C) of the skull with the hole.
 
+    Returns
+    -------
+    Score
+
     Raises
     ------
     InputRefused
         If the three do not share one grid (GridMismatch), or the skull has no bone (NoBone).
+
+    Examples
+    --------
+    >>> grid = Volume(np.zeros((4, 9, 9), bool), np.eye(4))
+    >>> truth, patch, skull = grid.voxels.copy(), grid.voxels.copy(), grid.voxels.copy()
+    >>> truth[:, 2:8, :], patch[:, 2:6, :], skull[:, 0, :] = True, True, True
+    >>> found = score(grid.with_voxels(patch), grid.with_voxels(truth), grid.with_voxels(skull))
+    >>> round(found.dice, 9), round(found.volume_ratio, 3), found.overlap
+    (0.8, 0.667, 0)
     """
     # one grid for all three: files round theirs, and a score must not depend on where a mask was stored
     check_same_grid(patch, skull, "patch and skull")
@@ -78,7 +92,24 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
 
 
 def dice(patch: Volume, truth: Volume) -> float:
-    """Dice similarity, 2 |A and B| / (|A| + |B|), 0 to 1; 1 for two empty masks."""
+    """Dice similarity, 2 |A and B| / (|A| + |B|).
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        0 to 1; 1 for two empty masks.
+
+    Examples
+    --------
+    >>> a, b = (Volume(np.arange(4).reshape(1, 1, 4) < n, np.eye(4)) for n in (1, 3))
+    >>> dice(a, b)
+    0.5
+    """
     check_same_grid(patch, truth, "patch and truth")
     return _dice(patch.voxels, truth.voxels)
 
@@ -93,6 +124,11 @@ def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach_mm: float 
     reach_mm : float
         Between voxel centres.
 
+    Returns
+    -------
+    float
+        0 to 1.
+
     Raises
     ------
     InputRefused
@@ -102,6 +138,7 @@ def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach_mm: float 
     check_same_grid(patch, skull, "patch and skull")
     if not skull.voxels.any():
         raise InputRefused("NoBone", "The skull mask is empty; the border Dice needs bone.")
+    # only voxels of either mask count
     box = _box(patch.voxels, truth.voxels)
     a, b = patch.voxels[box], truth.voxels[box]
     near = _near_bone(skull, np.argwhere(a | b) + [s.start for s in box], reach_mm)
@@ -110,7 +147,18 @@ def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach_mm: float 
 
 
 def volume_ratio(patch: Volume, truth: Volume) -> float:
-    """Volume of the patch over the volume of the truth; 1 for two empty masks, inf where only the truth is empty."""
+    """Volume of the patch over the volume of the truth.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        1 for two empty masks, inf where only the truth is empty.
+    """
     check_same_grid(patch, truth, "patch and truth")
     found, wanted = int(np.count_nonzero(patch.voxels)), int(np.count_nonzero(truth.voxels))
     if wanted == 0:
@@ -119,24 +167,67 @@ def volume_ratio(patch: Volume, truth: Volume) -> float:
 
 
 def overlap(patch: Volume, skull: Volume) -> int:
-    """Number of voxels that are both patch and bone."""
+    """Number of voxels that are both patch and bone.
+
+    Parameters
+    ----------
+    patch, skull : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    int
+    """
     check_same_grid(patch, skull, "patch and skull")
     box = _box(patch.voxels)
     return int(np.count_nonzero(patch.voxels[box] & skull.voxels[box]))
 
 
 def hd95(patch: Volume, truth: Volume) -> float:
-    """95th percentile of the `surface_distances`, mm: the Hausdorff distance without its outliers."""
+    """95th percentile of the `surface_distances`: the Hausdorff distance without its outliers.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _percentile95(surface_distances(patch, truth))
 
 
 def assd(patch: Volume, truth: Volume) -> float:
-    """Mean of the `surface_distances`, mm: average symmetric surface distance."""
+    """Mean of the `surface_distances`: average symmetric surface distance.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _mean(surface_distances(patch, truth))
 
 
 def rmse(patch: Volume, truth: Volume) -> float:
-    """Root mean square of the `surface_distances`, mm."""
+    """Root mean square of the `surface_distances`.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _root_mean_square(surface_distances(patch, truth))
 
 
@@ -170,7 +261,7 @@ def _near_bone(skull: Volume, index: NDArray[np.intp], reach: float) -> NDArray[
         return near
     # only bone in reach of any of the voxels counts
     margin = np.ceil(reach * np.linalg.norm(skull.steps(np.eye(3)), axis=0)).astype(int) + 1
-    box = skull.box_around(index, margin)
+    box = box_around(index, skull.shape, margin)
     bone = np.argwhere(_surface(skull.voxels[box])) + [side.start for side in box]
     if not len(bone):
         return near
@@ -183,11 +274,13 @@ def _within(points: NDArray, others: NDArray, reach: float) -> NDArray[np.bool_]
 
     A thinned set of the others settles most points: all of them lie within a cell's diagonal of it.
     """
+    # one point of each cell
     cell = reach / 5
     _, some = np.unique(np.floor(others / cell).astype(int), axis=0, return_index=True)
     slack = cell * np.sqrt(3)
     far = cKDTree(others[some]).query(points, distance_upper_bound=reach + slack)[0]
     within = far <= reach
+    # the rest is asked exactly
     unsure = np.flatnonzero(~within & np.isfinite(far))
     bound = reach * (1 + 1e-9) + 1e-9  # the tree's bound is exclusive
     within[unsure] = np.isfinite(cKDTree(others).query(points[unsure], distance_upper_bound=bound)[0])

@@ -55,5 +55,6 @@ def _touches_bone(mesh: Mesh, bone: Volume) -> NDArray[np.bool_]:
     """Whether a bone voxel lies within 1.5 voxels of each face, in the direction of its normal, shape (F,)."""
     start, step = bone.to_voxel(mesh.centres), bone.steps(mesh.normals)
     step /= np.abs(step).max(axis=1, keepdims=True).clip(1e-12)
-    reaches = (bone.at_index(start + reach * step, outside=False) for reach in (0.5, 1.0, 1.5))
-    return np.logical_or.reduce(list(reaches)).astype(bool)
+    # rounded first, so that a half falls to the same voxel in every header
+    places = (np.round(start + reach * step, 6) for reach in (0.5, 1.0, 1.5))
+    return np.logical_or.reduce([bone.at_index(place, outside=False) for place in places]).astype(bool)

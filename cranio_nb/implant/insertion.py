@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused
+from ..grid import nearest_values
 from ..mesh import Mesh
-from ..volume import Volume, check_same_grid, nearest_values
+from ..volume import Volume, check_same_grid
 
 
 def undercut_share(rim: Mesh, axis: NDArray[np.float64], *, tolerance_deg: float = 5.0) -> float:

@@ -31,6 +31,24 @@ class ImplantMass:
 
 
 def weigh_implant(mesh: Mesh) -> ImplantMass:
-    """Volume and mass of a closed mesh in world mm."""
+    """Volume and mass of a closed mesh.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        World mm, normals outward.
+
+    Returns
+    -------
+    ImplantMass
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> tetrahedron = Mesh(np.array([[0.0, 0, 0], [60, 0, 0], [0, 60, 0], [0, 0, 60]]),
+    ...                    np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
+    >>> round(weigh_implant(tetrahedron).mass_g["PEEK"], 2)
+    47.16
+    """
     volume = mesh.volume / 1000
     return ImplantMass(volume, {material: volume * density for material, density in DENSITIES.items()})

@@ -1,1 +1,1 @@
-"""Ways to design a prosthesis, all behind the same door: bone mask in -> `Prosthesis` out."""
+"""Ways to design a prosthesis: each yields a `Piece` for each opening, and `design` makes a `Prosthesis` of them."""

@@ -1,49 +1,259 @@
-"""The methods that can be asked for by name. Nothing is loaded before a method is used."""
+"""The methods that can be asked for by name: the built-in ones, those of other packages, and those added by hand.
+
+A method is a function ``pieces(bone, openings, *, <options>) -> Iterator[Piece]`` that yields one `Piece` for each
+opening, in their order. Its options are its keyword-only parameters, each with a default. Nothing is loaded before a
+method is used.
+
+Another package offers a method by an entry point in its ``pyproject.toml`` that names a module with the function
+``pieces`` and, where it has presets, the dict ``PRESETS``::
+
+    [project.entry-points."cranio_nb.methods"]
+    mine = "my_package.mine"
+"""
 
 from __future__ import annotations
 
 import inspect
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from importlib import import_module
-from types import ModuleType
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from ..errors import InputRefused
+from ..volume import Volume
+from .piece import Piece
 
 METHODS = {
-    "slicewise": "cranio_nb.methods.slicewise",
+    "slicewise": "cranio_nb.methods.slicewise.method",
     "hull": "cranio_nb.methods.hull",
     "reflection": "cranio_nb.methods.reflection",
     "you": "cranio_nb.methods.you.method",
     "thin-plate": "cranio_nb.methods.thin_plate",
     "dnurbs": "cranio_nb.methods.dnurbs.method",
 }
-"""Name -> module with the door ``design(bone, openings, *, progress, **options) -> Prosthesis``. A module that also has
-``paper_options(bone)`` offers the preset "paper"."""
+"""The built-in methods: name -> module with the function ``pieces`` and, where it has presets, ``PRESETS``."""
 
-PRESETS = ("default", "paper")
+GROUP = "cranio_nb.methods"
+"""Group of the entry points by which other packages offer methods."""
+
+COMMON = {"smooth": True}
+"""Options that `design` itself gives every method: `smooth` for a surface without stairs."""
+
+Pieces = Callable[..., Iterator[Piece]]
+Preset = Mapping[str, Any] | Callable[[Volume], Mapping[str, Any]]
 
 
-def method_module(name: str) -> ModuleType:
-    """The module of a method.
+@dataclass(frozen=True)
+class Method:
+    """A method and its presets.
+
+    Parameters
+    ----------
+    name : str
+    pieces : callable
+        ``pieces(bone, openings, *, <options>)``, yields a `Piece` for each opening.
+    presets : dict
+        Name -> options, or a function of the bone that returns them. The preset "default" is not among them: it is
+        the defaults of the options.
+    """
+
+    name: str
+    pieces: Pieces
+    presets: Mapping[str, Preset]
+
+
+_added: dict[str, Method] = {}  # by `add_method`, in this process
+
+
+def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str, Preset] | None = None) -> Any:
+    """Add an own method to the catalogue, for this process and those that it starts.
+
+    Parameters
+    ----------
+    name : str
+        A name that no other method has, without spaces and colons.
+    pieces : callable, optional
+        ``pieces(bone, openings, *, <options>)``, yields a `Piece` for each opening. When not given, a decorator for
+        such a function is returned.
+    presets : dict, optional
+        Name -> options, or a function of the bone that returns them.
+
+    Returns
+    -------
+    callable
+        `pieces`, or the decorator.
 
     Raises
     ------
     InputRefused
-        ``UnknownMethod``.
+        ``BadMethod`` for what is no such function; ``MethodNameTaken``. The same function may be added again, so a
+        cell of a notebook can be run twice.
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from scipy import ndimage
+    >>> from cranio_nb.methods.catalogue import default_options, remove_method
+    >>> from cranio_nb.methods.piece import Piece
+    >>> @cn.add_method("sheet")
+    ... def pieces(bone, openings, *, grow_px=2):
+    ...     for opening in openings:
+    ...         yield Piece(ndimage.binary_dilation(opening.sheet.voxels, iterations=grow_px))
+    >>> default_options("sheet")
+    {'grow_px': 2, 'smooth': True}
+    >>> remove_method("sheet")
     """
-    if name not in METHODS:
-        raise InputRefused("UnknownMethod", f"There is no method named {name!r}.", f"Known are: {', '.join(METHODS)}.")
-    return import_module(METHODS[name])
+    if pieces is None:
+        return lambda function: add_method(name, function, presets=presets)
+    made = _checked(name, pieces, presets or {})
+    before = _added.get(name)
+    if (before is None and name in method_names()) or (before and _place(before.pieces) != _place(pieces)):
+        remedy = f"Choose a name other than {', '.join(method_names())}."
+        raise InputRefused("MethodNameTaken", f"There is a method named {name!r} already.", remedy)
+    _added[name] = made
+    return pieces
+
+
+def remove_method(name: str) -> None:
+    """Take a method that `add_method` added out of the catalogue again; other names are left alone.
+
+    Parameters
+    ----------
+    name : str
+    """
+    _added.pop(name, None)
+
+
+def method_names() -> tuple[str, ...]:
+    """Names of all methods: the built-in ones, those of other packages, those added by `add_method`.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(dict.fromkeys((*METHODS, *_offered(), *_added)))
+
+
+def find_method(name: str) -> Method:
+    """The method of a name.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    Method
+
+    Raises
+    ------
+    InputRefused
+        ``UnknownMethod``; ``BadMethod`` for an entry point that names no method.
+    """
+    if name in _added:
+        return _added[name]
+    path = METHODS.get(name)
+    if path is None and name in (offered := _offered()):
+        path = offered[name].value
+    if path is None:
+        known = ", ".join(method_names())
+        raise InputRefused("UnknownMethod", f"There is no method named {name!r}.", f"Known are: {known}.")
+    module = import_module(path)
+    return _checked(name, getattr(module, "pieces", None), getattr(module, "PRESETS", {}))
+
+
+def added_methods() -> tuple[Method, ...]:
+    """The methods that `add_method` added in this process.
+
+    Returns
+    -------
+    tuple of Method
+    """
+    return tuple(_added.values())
+
+
+def preset_names(name: str) -> tuple[str, ...]:
+    """The presets of a method, "default" first.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return ("default", *find_method(name).presets)
+
+
+def preset_options(name: str, preset: str, bone: Volume) -> dict[str, Any]:
+    """The options that a preset changes.
+
+    Parameters
+    ----------
+    name, preset : str
+        Of the method and of its preset.
+    bone : Volume
+        Bool mask of the skull, for presets that depend on its grid.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    InputRefused
+        ``UnknownPreset``.
+    """
+    check_preset(name, preset)
+    found = {} if preset == "default" else find_method(name).presets[preset]
+    return dict(found(bone) if callable(found) else found)
+
+
+def check_preset(name: str, preset: str) -> None:
+    """Refuse a preset that a method does not have.
+
+    Parameters
+    ----------
+    name, preset : str
+        Of the method and of its preset.
+
+    Raises
+    ------
+    InputRefused
+        ``UnknownMethod`` or ``UnknownPreset``.
+    """
+    if preset not in preset_names(name):
+        message = f"The method {name} has no preset named {preset!r}."
+        raise InputRefused("UnknownPreset", message, f"It has: {', '.join(preset_names(name))}.")
 
 
 def default_options(name: str) -> dict[str, Any]:
-    """Every option of a method with its default value."""
-    parameters = inspect.signature(method_module(name).design).parameters.values()
-    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY and p.name != "progress"}
+    """Every option of a method with its default value.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+
+    Returns
+    -------
+    dict
+    """
+    parameters = inspect.signature(find_method(name).pieces).parameters.values()
+    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY} | COMMON
 
 
 def check_options(name: str, options: dict[str, Any]) -> None:
     """Refuse options that a method does not have, or whose values are of another kind than its defaults.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+    options : dict
 
     Raises
     ------
@@ -64,7 +274,7 @@ def check_options(name: str, options: dict[str, Any]) -> None:
 
 
 def _same_kind(value: Any, default: Any) -> bool:
-    """Whether a value may stand where the default stands; None stands for a number that follows from the data."""
+    """Whether a value may replace the default; None is the default of a number that follows from the data."""
     if isinstance(default, bool | str):
         return type(value) is type(default)
     if isinstance(value, bool):
@@ -72,3 +282,41 @@ def _same_kind(value: Any, default: Any) -> bool:
     if isinstance(default, int):
         return isinstance(value, int)
     return isinstance(value, int | float) or (default is None and value is None)
+
+
+def _offered() -> dict[str, EntryPoint]:
+    """The methods that other installed packages offer."""
+    return {point.name: point for point in entry_points(group=GROUP)}
+
+
+def _place(function: Pieces) -> tuple[str, str]:
+    """Where a function was written: its module and its name there."""
+    return getattr(function, "__module__", ""), getattr(function, "__qualname__", "")
+
+
+def _checked(name: str, pieces: Any, presets: Any) -> Method:
+    """The method, refused where it is none (``BadMethod``)."""
+    problem = _problem(name, pieces, presets)
+    if problem:
+        remedy = "Write it as pieces(bone, openings, *, option=default, ...), which yields a Piece for each opening."
+        raise InputRefused("BadMethod", f"The method {name!r} {problem}.", remedy)
+    return Method(name, pieces, presets)
+
+
+def _problem(name: Any, pieces: Any, presets: Any) -> str:
+    """What keeps a registration from being a method; empty where nothing does."""
+    if not isinstance(name, str) or not name or any(c.isspace() or c == ":" for c in name):
+        return "needs a name that is a word without spaces and colons"
+    if not callable(pieces):
+        return f"is given as {type(pieces).__name__}, and wanted is a function"
+    parameters = list(inspect.signature(pieces).parameters.values())
+    if len(parameters) < 2 or any(p.kind is not p.POSITIONAL_OR_KEYWORD for p in parameters[:2]):
+        return "does not take bone and openings as its first two parameters"
+    loose = [p.name for p in parameters[2:] if p.kind is not p.KEYWORD_ONLY or p.default is p.empty]
+    if loose:
+        return f"has parameters that are no keyword-only options with a default: {', '.join(loose)}"
+    if COMMON.keys() & {p.name for p in parameters}:
+        return f"has an option that `design` gives to every method: {', '.join(COMMON)}"
+    if not isinstance(presets, Mapping) or "default" in presets:
+        return "needs presets as a dict of names other than 'default'"
+    return ""

@@ -5,15 +5,25 @@ Frames: voxel (plane, row, col) in, world mm (LPS) out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import time
+from collections.abc import Callable, Iterable, Sequence
+from importlib.metadata import version
 from typing import Any
 
-from ..errors import InputRefused
+import numpy as np
+
+from ..errors import InputRefused, NoOpening
+from ..geometry import face_sides
 from ..opening import Opening
 from ..prosthesis import Prosthesis
+from ..stages import surface_reconstruction
 from ..vault.opening_search import find_openings
 from ..volume import Volume
-from .catalogue import PRESETS, check_options, method_module
+from .catalogue import COMMON, check_options, check_preset, default_options, find_method, preset_options
+from .piece import Piece
+
+Progress = Callable[[str, float], None]
+_SURFACE = 0.9  # part of the work that is done when all pieces are made
 
 
 def design(
@@ -22,7 +32,7 @@ def design(
     *,
     method: str = "slicewise",
     preset: str = "default",
-    progress: Callable[[str, float], None] | None = None,
+    progress: Progress | None = None,
     **options: Any,
 ) -> Prosthesis:
     """Design what closes the openings of a skull.
@@ -35,12 +45,68 @@ def design(
         Openings to close; found automatically when not given.
     method : str
         A name of the catalogue.
-    preset : {"default", "paper"}
-        Options to start from.
+    preset : str
+        Options to start from: "default", or a preset of the method such as "paper".
     progress : callable, optional
         Called with (stage, fraction done).
     **options
-        Options of the method that differ from the preset.
+        Options of the method that differ from the preset. Every method has `smooth`: a surface without stairs (see
+        `surface_reconstruction.extract_surface`).
+
+    Returns
+    -------
+    Prosthesis
+        `parameters` holds every option, `working` what the method kept of each opening.
+
+    Raises
+    ------
+    InputRefused
+        Where the request is not known, or the method cannot serve this input.
+    NoOpening
+        When the vault is closed, the list of openings is empty, or nothing could be bridged.
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "burr_hole", 0)
+    >>> made = cn.design(cn.Volume(case.bone, case.affine), method="hull")
+    >>> made.method, made.parameters
+    ('hull', {'axial': False, 'smooth': True})
+    """
+    check_request(method, preset, options)
+    openings = find_openings(bone) if openings is None else openings
+    parameters = default_options(method) | preset_options(method, preset, bone) | options
+    own = {name: value for name, value in parameters.items() if name not in COMMON}
+    pieces = find_method(method).pieces(bone, openings, **own)
+    return assemble(bone, openings, pieces, method=method, parameters=parameters, progress=progress)
+
+
+def assemble(
+    bone: Volume,
+    openings: Sequence[Opening],
+    pieces: Iterable[Piece],
+    *,
+    method: str,
+    parameters: dict[str, Any],
+    progress: Progress | None = None,
+) -> Prosthesis:
+    """Join the pieces of a method, give them a surface and a record.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    openings : sequence of Opening
+        At least one; the outer side of the mesh is seen from its head centre.
+    pieces : iterable of Piece
+        One for each opening. Voxels of bone are taken off them.
+    method : str
+        Name of the method.
+    parameters : dict
+        Every option of the method; `smooth` is heeded here.
+    progress : callable, optional
+        Called with (stage, fraction done).
 
     Returns
     -------
@@ -48,29 +114,97 @@ def design(
 
     Raises
     ------
-    InputRefused
-        Where the request is not known, or the method cannot serve this input.
     NoOpening
-        When the vault is closed, or nothing could be bridged.
+        ``NoOpening`` without an opening, ``NothingBridged`` where the pieces are empty.
+    InputRefused
+        ``BadPiece`` where a method does not yield a piece on the bone's grid for each opening.
     """
-    check_request(method, preset, options)
-    openings = find_openings(bone) if openings is None else openings
-    module = method_module(method)
-    start = module.paper_options(bone) if preset == "paper" else {}
-    made: Prosthesis = module.design(bone, openings, progress=progress, **(start | options))
-    return made
+    if not len(openings):
+        raise NoOpening("NoOpening", "The list of openings is empty.", "Give one opening at least.")
+    report = progress or (lambda stage, done: None)
+    began = time.perf_counter()
+    report("design", 0.0)
+    patch = np.zeros(bone.shape, bool)
+    working: list[Any] = []
+    records: list[dict[str, Any]] = []
+    for piece in pieces:
+        _check_piece(piece, bone, method)
+        patch |= piece.voxels
+        working += piece.working
+        records.append(piece.record)
+        report("design", min(_SURFACE * len(records) / len(openings), _SURFACE))
+    _check_all(method, len(records), len(openings))
+    patch &= ~bone.voxels  # of a method that does not take the bone off itself
+    if not patch.any():
+        message = f"The method {method} could not bridge any part of the opening."
+        raise NoOpening("NothingBridged", message, "Try another method or preset.")
+    report("surface", _SURFACE)
+    solid = bone.with_voxels(patch)
+    mesh = surface_reconstruction.extract_surface(solid, smooth=parameters["smooth"])
+    sides = face_sides.label_faces(mesh, bone, openings[0].head_centre)
+    record = {"version": version("cranio-nb"), "seconds": time.perf_counter() - began, **join_records(records)}
+    return Prosthesis(mesh, sides, solid, method, parameters, record, tuple(working))
+
+
+def join_records(records: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The record of a design from those of its pieces.
+
+    Parameters
+    ----------
+    records : sequence of dict
+        In the order of the openings.
+
+    Returns
+    -------
+    dict
+        Lists are joined, each entry with the index of its opening; of anything else the last value is kept.
+
+    Examples
+    --------
+    >>> from cranio_nb.methods.design import join_records
+    >>> join_records([{"slices": [{"plane": 3}], "n": 1}, {"slices": [{"plane": 8}], "n": 1}])
+    {'slices': [{'opening': 0, 'plane': 3}, {'opening': 1, 'plane': 8}], 'n': 1}
+    """
+    joined: dict[str, Any] = {}
+    for index, record in enumerate(records):
+        for key, value in record.items():
+            if isinstance(value, list):
+                joined.setdefault(key, []).extend({"opening": index, **entry} for entry in value)
+            else:
+                joined[key] = value
+    return joined
 
 
 def check_request(method: str, preset: str, options: dict[str, Any]) -> None:
     """Refuse a request that no input could serve, before anything is read.
 
+    Parameters
+    ----------
+    method, preset : str
+        Names.
+    options : dict
+        Options of the method that differ from the preset.
+
     Raises
     ------
     InputRefused
-        ``UnknownMethod``, ``UnknownPreset`` or ``BadOption``.
+        ``UnknownMethod``, ``UnknownPreset``, ``UnknownOption`` or ``BadOption``.
     """
-    if preset not in PRESETS:
-        raise InputRefused("UnknownPreset", f"There is no preset named {preset!r}.", f"Known are {', '.join(PRESETS)}.")
-    if preset == "paper" and not hasattr(method_module(method), "paper_options"):
-        raise InputRefused("UnknownPreset", f"The method {method} has no preset of the paper.", "Use the default.")
+    check_preset(method, preset)
     check_options(method, options)
+
+
+def _check_piece(piece: Any, bone: Volume, method: str) -> None:
+    """Refuse what is no piece on the grid of the bone."""
+    if isinstance(piece, Piece) and piece.voxels.shape == bone.shape and piece.voxels.dtype == bool:
+        return
+    found = f"{piece.voxels.dtype} {piece.voxels.shape}" if isinstance(piece, Piece) else type(piece).__name__
+    message = f"The method {method} made a piece of {found}; wanted is a Piece with bool voxels {bone.shape}."
+    raise InputRefused("BadPiece", message, "Yield Piece(voxels) on the bone's own grid.")
+
+
+def _check_all(method: str, n_pieces: int, n_openings: int) -> None:
+    """Refuse a method that left out an opening, or made more of them."""
+    if n_pieces != n_openings:
+        message = f"The method {method} made {n_pieces} pieces for {n_openings} openings."
+        raise InputRefused("BadPiece", message, "Yield one Piece for each opening, an empty one where nothing is done.")

@@ -1,12 +1,12 @@
-"""The simplest rival: a rubber sheet over the hole, the convex hull minus bone.
+"""The simplest method: the convex hull across the hole, minus bone.
 
-Bone mask in, `Prosthesis` out. The 2011 paper (doi 10.5220/0003356601370142) uses the convex hull for slices of
+Bone mask in, pieces out. The 2011 paper (doi 10.5220/0003356601370142) uses the convex hull for slices of
 partial loss (its Fig. 6): hull minus bone, without small islands and without the biggest region, the cavity.
 
-Faithful, with `paper_options`: that rule on every axial slice whose ring of bone is closed. The rule says nothing of a
-slice whose ring is open, since there the hull minus bone runs into the cavity, which is the biggest region: it would
-give nothing. Ours is an inner surface: the hull of the endocranial contour, the points where rays from inside the head
-first meet bone. What lies between the two hulls and in the hole's cone is a plate, flat along each slice.
+Faithful, with the preset "paper": that rule on every axial slice whose ring of bone is closed. The rule says nothing
+of a slice whose ring is open, since there the hull minus bone runs into the cavity, which is the biggest region: it
+would give nothing. Ours is an inner surface: the hull of the endocranial contour, the points where rays from inside
+the head first meet bone. What lies between the two hulls and in the hole's cone is a plate, flat along each slice.
 
 Ours, and the default, is the same in space: the hull of the vault's outer surface around the hole, minus the hull of
 its inner surface. It needs no slicing direction, closes holes at the top of the head too, where axial slices hold no
@@ -18,8 +18,7 @@ R - sqrt(R^2 - D^2 / 4) too deep, 3 mm for 40 mm and 17 mm for 95 mm at R = 75 m
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -28,15 +27,13 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
-from ..errors import NoOpening
 from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..prosthesis import Prosthesis
 from ..stages import prosthesis_volume
-from ..vault import opening_search, radius_measurement, radius_voxels
+from ..vault import radius_measurement, radius_voxels
 from ..vault.ray_grid import RadiusMap
 from ..volume import Volume
-from .assembly import assemble
+from .piece import Piece
 
 _RAYS = 360  # around a slice
 _ISLAND = 4.0  # mm2: smaller pieces of a slice are dropped
@@ -64,71 +61,40 @@ class HullDesign:
     slices: tuple[dict[str, Any], ...] = ()
 
 
-def paper_options(bone: Volume) -> dict[str, Any]:
-    """Options of `design` as the paper uses the hull: slice by slice along the planes of the scan."""
-    return {"axial": True}
+PRESETS = {"paper": {"axial": True}}
+"""The paper uses the hull slice by slice along the planes of the scan."""
 
 
-def design(
-    bone: Volume,
-    openings: Sequence[Opening] | None = None,
-    *,
-    axial: bool = False,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis by convex hulls.
+def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) -> Iterator[Piece]:
+    """Close each opening by convex hulls.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
+    openings : sequence of Opening
+        Openings to close.
     axial : bool
         Hulls of the slices along the planes of the scan, as the paper; otherwise hulls in space.
-    smooth : bool
-        Surface without stairs (see `surface_reconstruction.extract_surface`).
-    progress : callable, optional
-        Called with (stage, fraction done).
 
-    Returns
-    -------
-    Prosthesis
-        With `axial`, `record["slices"]` holds status and reason of every slice. `working` holds a `HullDesign` per
-        opening.
-
-    Raises
+    Yields
     ------
-    NoOpening
-        When the vault is closed, or no slice of the opening holds a rim for a hull to rest on.
+    Piece
+        With `axial`, the record's `slices` hold status and reason of every slice. `working` holds a `HullDesign`.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
-    openings = opening_search.find_openings(bone) if openings is None else openings
-    made, patch = [], np.zeros(bone.shape, bool)
-    for i, one in enumerate(openings):
-        tell("hull", 0.9 * i / len(openings))
-        part, piece = (_by_slices if axial else _in_space)(bone, one)
-        made.append(part)
-        patch |= piece
-    if not patch.any():
-        raise NoOpening("NothingBridged", "No slice of the opening has a rim for a hull.", "Try the hull in space.")
-    tell("surface", 0.9)
-    record = {}
-    if axial:
-        record["slices"] = [{"opening": i, **entry} for i, part in enumerate(made) for entry in part.slices]
-    return assemble(patch, bone, openings, "hull", options, began=began, working=made, record=record)
+    for opening in openings:
+        made, voxels = (_by_slices if axial else _in_space)(bone, opening)
+        record = {"slices": list(made.slices)} if axial else {}
+        yield Piece(voxels, (made,), record)
 
 
-def _in_space(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
+def _in_space(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening between the hulls of the vault's two surfaces."""
-    vault = radius_measurement.measure_around(bone, one)
+    vault = radius_measurement.measure_around(bone, opening)
     outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
     outer, inner = radius_voxels.thickened(vault, outer=outer, inner=inner)
     piece = radius_voxels.voxels_between(vault, bone, outer=outer, inner=inner)
-    return HullDesign(one, vault, outer, inner), voxel_pieces.keep_solid_piece(piece, one.sheet, bone)
+    return HullDesign(opening, vault, outer, inner), voxel_pieces.keep_solid_piece(piece, opening.sheet, bone)
 
 
 def _hull_radius(vault: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -152,22 +118,22 @@ def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[n
     return np.where((length > 1.0) & np.isfinite(length), length, np.nan)
 
 
-def _by_slices(bone: Volume, one: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
+def _by_slices(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening, slice by slice along the planes of the scan."""
-    vault = radius_measurement.measure_around(bone, one)
-    first, end = one.planes
+    vault = radius_measurement.measure_around(bone, opening)
+    first, end = opening.planes
     px = float(bone.spacing[1:].mean())
-    near = ndimage.binary_dilation(one.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
+    near = ndimage.binary_dilation(opening.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
     cone = _cone(vault, bone)
     piece, entries = np.zeros(bone.shape, bool), []
     for plane in range(max(first - 2, 0), min(end + 2, bone.shape[0])):
-        hits = _first_bone(bone.voxels[plane], bone.to_voxel(one.head_centre)[1:])
+        hits = _first_bone(bone.voxels[plane], bone.to_voxel(opening.head_centre)[1:])
         rim = _in_hole(vault, bone.to_world(np.insert(hits, 0, plane, axis=1)))
         piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
         entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
     nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(one, vault, nothing, nothing, tuple(entries)), voxel_pieces.keep_solid_piece(
-        piece, one.sheet, bone
+    return HullDesign(opening, vault, nothing, nothing, tuple(entries)), voxel_pieces.keep_solid_piece(
+        piece, opening.sheet, bone
     )
 
 

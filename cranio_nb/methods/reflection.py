@@ -1,6 +1,6 @@
 """The classical reference: the skull's other side, mirrored into the hole.
 
-Bone mask in, `Prosthesis` out. The 2011 paper (doi 10.5220/0003356601370142) measures its prostheses against a
+Bone mask in, pieces out. The 2011 paper (doi 10.5220/0003356601370142) measures its prostheses against a
 reflection: the skull is mirrored at its symmetry plane, bone is taken off, the piece in the hole is kept.
 
 Idea. `find_symmetry_plane` gives the plane x -> x - 2 (n (x - p)) n. The mirrored skull is the same voxels under
@@ -10,7 +10,7 @@ mirror image has no bone either, because the defect crosses the plane or has a p
 
 Faithful: mirror, subtract, keep the piece in the hole. Ours: the plane is found and not clicked, the surface is smooth
 between voxels, the edge ends with the bone's own surface, the part that cannot be copied is refused or left out. Also
-ours is `fit_rim`, which `paper_options` turn off: no head is symmetric, so the mirrored radii m leave a step at the
+ours is `fit_rim`, which the preset "paper" turns off: no head is symmetric, so the mirrored radii m leave a step at the
 rim. The difference d = r - m to the bone's own radii r is known around the hole; with
 
     sum over known rays (g - d)^2 + s^4 sum (laplacian g)^2 + s^4 / l^2 sum |grad g|^2 -> min
@@ -21,10 +21,8 @@ first, which the tension takes away further in than l, where the rim knows nothi
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,12 +32,11 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..prosthesis import Prosthesis
-from ..vault import opening_search, radius_measurement, radius_voxels, symmetry
+from ..vault import radius_measurement, radius_voxels, symmetry
 from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
-from .assembly import assemble
+from .piece import Piece
 
 _TOLERATED = 0.03  # part of a hole without a mirror image that is filled from beside it
 _TIP = 2.0  # mm: narrower ends of a possible part are left out
@@ -73,77 +70,64 @@ class MirroredDesign:
 
     @property
     def lost(self) -> float:
-        """Part of the hole that has no mirror image, 0 to 1."""
+        """Part of the hole that has no mirror image, 0 to 1.
+
+        Returns
+        -------
+        float
+        """
         return float((self.own.hole & self.mirrored.hole).sum() / self.own.hole.sum())
 
 
-def paper_options(bone: Volume) -> dict[str, Any]:
-    """Options of `design` as the paper uses its reflection: mirrored, and not bent."""
-    return {"fit_rim": False}
+PRESETS = {"paper": {"fit_rim": False}}
+"""The paper mirrors and does not bend."""
 
 
-def design(
-    bone: Volume,
-    openings: Sequence[Opening] | None = None,
-    *,
-    partial: bool = False,
-    fit_rim: bool = True,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis by mirroring the other side of the skull.
+def pieces(
+    bone: Volume, openings: Sequence[Opening], *, partial: bool = False, fit_rim: bool = True
+) -> Iterator[Piece]:
+    """Close each opening by mirroring the other side of the skull.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
+    openings : sequence of Opening
+        Openings to close.
     partial : bool
         Where the other side lacks bone too, leave that part (or that whole opening) open instead of refusing.
     fit_rim : bool
         Bend the mirrored surfaces smoothly to meet the bone around the hole, nowhere thinner than sound bone near it.
-    smooth : bool
-        Surface without stairs (see `surface_reconstruction.extract_surface`).
-    progress : callable, optional
-        Called with (stage, fraction done).
 
-    Returns
-    -------
-    Prosthesis
-        `record["symmetry"]` describes the plane, `record["openings"]` what part of each hole has no mirror image.
-        `working` holds a `MirroredDesign` per opening.
+    Yields
+    ------
+    Piece
+        The record's `symmetry` describes the plane, its `openings` what part of the hole has no mirror image.
+        `working` holds a `MirroredDesign`.
 
     Raises
     ------
-    NoOpening
-        When the vault is closed.
     InputRefused
         ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
-    openings = opening_search.find_openings(bone) if openings is None else openings
-    tell("symmetry", 0.1)
     plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre)
-    made = []
-    for i, one in enumerate(openings):
-        tell("mirroring", 0.2 + 0.6 * i / len(openings))
-        made.append(_mirrored(bone, one, plane, fit_rim))
+    made = [_mirrored(bone, opening, plane, fit_rim) for opening in openings]
     if not partial:
         _check_whole(made)
-    patch = np.zeros(bone.shape, bool)
-    for part in made:
-        if np.isfinite(part.outer).any():
-            piece = radius_voxels.voxels_between(part.own, bone, outer=part.outer, inner=part.inner)
-            patch |= voxel_pieces.keep_solid_piece(piece, part.opening.sheet, bone)
-    if not patch.any():
+    solids = [_solid(part, bone) for part in made]
+    if not any(voxels.any() for voxels in solids):
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
-    tell("surface", 0.9)
-    lost = [{"opening": i, "without_mirror_image": part.lost} for i, part in enumerate(made)]
-    record = {"symmetry": plane.record(), "openings": lost}
-    return assemble(patch, bone, openings, "reflection", options, began=began, working=made, record=record)
+    for part, voxels in zip(made, solids, strict=True):
+        record = {"symmetry": plane.record(), "openings": [{"without_mirror_image": part.lost}]}
+        yield Piece(voxels, (part,), record)
+
+
+def _solid(part: MirroredDesign, bone: Volume) -> NDArray[np.bool_]:
+    """The voxels between the mirrored radii; none where nothing can be copied."""
+    if not np.isfinite(part.outer).any():
+        return np.zeros(bone.shape, bool)
+    between = radius_voxels.voxels_between(part.own, bone, outer=part.outer, inner=part.inner)
+    return voxel_pieces.keep_solid_piece(between, part.opening.sheet, bone)
 
 
 def _check_whole(made: list[MirroredDesign]) -> None:
@@ -165,9 +149,9 @@ def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
     )
 
 
-def _mirrored(bone: Volume, one: Opening, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
+def _mirrored(bone: Volume, opening: Opening, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
     """Radii of the mirror image across one hole, nan where it has none to give."""
-    own = radius_measurement.measure_around(bone, one)
+    own = radius_measurement.measure_around(bone, opening)
     image = radius_measurement.measure_along(own, plane.mirrored(bone))
     known = np.isfinite(image.outer) & ~image.hole
     outer, inner = (filled_from_nearest(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
@@ -176,7 +160,7 @@ def _mirrored(bone: Volume, one: Opening, plane: SymmetryPlane, fit_rim: bool) -
         outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
         inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
         outer, inner = radius_voxels.thickened(own, outer=outer, inner=inner)
-    made = MirroredDesign(one, plane, own, image, outer, inner)
+    made = MirroredDesign(opening, plane, own, image, outer, inner)
     keep = own.hole
     if made.lost > _TOLERATED:
         keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / own.step_mm)))

@@ -1,4 +1,4 @@
-"""A thin plate across the hole: bone mask in, `Prosthesis` out.
+"""A thin plate across the hole: bone mask in, pieces out.
 
 Idea: seen from inside the head each surface of the vault is one radius per direction (`chart`). A plate that lies on
 the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
@@ -14,7 +14,7 @@ the plate is stiffer and heeds them less.
 
 The second order pulls smoothed bone towards spheres, the third towards quadrics, so that it carries the rim's
 curvature into the hole, but also the rim's bumps; both together err less than either. The last term asks the plate to
-be curved as the other side is; it knows nothing of where the other side lies, so an asymmetric head and a plane that
+be curved as the other side is; it does not depend on where the other side lies, so an asymmetric head and a plane that
 is a little off leave no step at the rim. It is left out where the mirrored skull lies more than 1.3 mm off the skull:
 then the plane is wrong, or the head has none. The lengths a, b, c (mm) say over what distance bone is smoothed; across
 the hole only their ratios matter. The weights w and v drop bone that does not belong to the vault, ridges, vessels and
@@ -27,8 +27,7 @@ functions, the third order, the smoothing, the robust weights, the inner surface
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import comb
 from pathlib import Path
@@ -39,18 +38,17 @@ from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import splu
 
-from ..errors import InputRefused, NoOpening
+from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
 from ..prior.around_opening import predict_around
 from ..prior.file import load_prior
 from ..prior.shape_prior import Prior
-from ..prosthesis import Prosthesis
-from ..vault import opening_search, radius_measurement, radius_voxels, symmetry
+from ..vault import radius_measurement, radius_voxels, symmetry
 from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane
 from ..volume import Volume
-from .assembly import assemble
+from .piece import Piece
 
 Array = NDArray[np.float64]
 
@@ -79,7 +77,7 @@ class Plate:
     mirrored : tuple of ndarray, shape (M, M), or None
         Outer and inner radii of the other side of the skull; nan where it has none.
     expected : tuple of ndarray, shape (M, M), or None
-        Outer and inner radii that a prior lets expect.
+        Outer and inner radii that a prior predicts.
     """
 
     chart: RadiusMap
@@ -89,67 +87,48 @@ class Plate:
     expected: tuple[Array, Array] | None
 
 
-def design(
+def pieces(
     bone: Volume,
-    openings: Sequence[Opening] | None = None,
+    openings: Sequence[Opening],
     *,
-    second: float = 1.3,
-    third: float = 1.8,
-    mirror: float = 1.6,
+    second_mm: float = 1.3,
+    third_mm: float = 1.8,
+    mirror_mm: float = 1.6,
     prior: str = "",
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis by bending thin plates across the hole.
+) -> Iterator[Piece]:
+    """Close each opening by bending thin plates across it.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
-    second, third : float
+    openings : sequence of Opening
+        Openings to close.
+    second_mm, third_mm : float
         The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
-    mirror : float
+    mirror_mm : float
         The length c over which bone is smoothed towards the curvature of the other side, mm; 0 for none.
     prior : str
-        File made by `cranio-nb prior learn`: the plate is then held to what intact skulls let expect. Empty for none.
-    smooth : bool
-        Surface without stairs (see `surface_reconstruction.extract_surface`).
-    progress : callable, optional
-        Called with (stage, fraction done).
+        File made by `cranio-nb prior learn`: the plate is then held to what intact skulls predict. Empty for none.
 
-    Returns
-    -------
-    Prosthesis
-        `record["symmetry"]` describes the symmetry plane or says why there is none. `working` holds a `Plate` per
-        opening.
+    Yields
+    ------
+    Piece
+        The record's `symmetry` describes the symmetry plane or why there is none; the piece is empty where too
+        little bone is seen around the opening. `working` holds a `Plate`.
 
     Raises
     ------
-    NoOpening
-        When the vault is closed, or too little bone is seen around every opening.
     InputRefused
         ``NoPrior`` or ``PriorDoesNotFit``.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
     learned = load_prior(Path(prior)) if prior else None
-    openings = opening_search.find_openings(bone) if openings is None else openings
-    tell("symmetry", 0.1)
-    plane, found = _symmetry(bone, openings[0]) if mirror else (None, {"unused": "not asked for"})
-    patch = np.zeros(bone.shape, bool)
-    plates = []
-    for i, one in enumerate(openings):
-        tell("plates", 0.2 + 0.6 * i / len(openings))
-        plates.append(_plate(bone, one, plane, learned, {"second": second, "third": third, "likeness": mirror}))
-        patch |= _piece(plates[-1], one, bone)
-    if not patch.any():
-        raise NoOpening("NothingBridged", "Too little bone is seen around the opening to close it.")
-    tell("surface", 0.8)
+    plane, found = _symmetry(bone, openings[0]) if mirror_mm else (None, {"unused": "not asked for"})
     record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
-    return assemble(patch, bone, openings, "thin-plate", options, began=began, working=plates, record=record)
+    lengths = {"second_mm": second_mm, "third_mm": third_mm, "mirror_mm": mirror_mm}
+    for opening in openings:
+        plate = _plate(bone, opening, plane, learned, lengths)
+        yield Piece(_solid(plate, opening, bone), (plate,), record)
 
 
 def bend(
@@ -159,9 +138,9 @@ def bend(
     *,
     like: Array | None = None,
     expected: Array | None = None,
-    second: float = 1.3,
-    third: float = 1.8,
-    likeness: float = 1.6,
+    second_mm: float = 1.3,
+    third_mm: float = 1.8,
+    mirror_mm: float = 1.6,
 ) -> Array:
     """Continue a map across a hole with the least bending.
 
@@ -177,7 +156,7 @@ def bend(
         A map of the same curvature, up to anything; nan where unknown.
     expected : ndarray, shape (M, N), optional
         A map to bend less far from, known everywhere; springs hold the plate to it in the hole.
-    second, third, likeness : float
+    second_mm, third_mm, mirror_mm : float
         The lengths a, b and c of the energy, mm; 0 for none.
 
     Returns
@@ -192,10 +171,10 @@ def bend(
         return out
     base = np.full(values.shape, np.median(values[beside][known])) if expected is None else expected
     data = np.where(known, (values - base)[beside], 0.0)
-    stiffness = _stiffness(beside, 2, second / mm) + _stiffness(beside, 3, third / mm)
+    stiffness = _stiffness(beside, 2, second_mm / mm) + _stiffness(beside, 3, third_mm / mm)
     push = np.zeros(len(data))
-    if like is not None and likeness:
-        held, push = _towards((like - base)[beside], beside, likeness / mm)
+    if like is not None and mirror_mm:
+        held, push = _towards((like - base)[beside], beside, mirror_mm / mm)
         stiffness = stiffness + held
     if expected is not None:
         stiffness = stiffness + sparse.diags_array(_SPRING * hole[beside])
@@ -252,10 +231,10 @@ def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_arra
     return sparse.csr_array((np.tile(stencil.ravel(), len(nodes)), (rows, nodes.ravel())), shape=shape)
 
 
-def _symmetry(bone: Volume, one: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
+def _symmetry(bone: Volume, opening: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
     """The symmetry plane, if there is one, and what to record of it."""
     try:
-        plane = symmetry.find_symmetry_plane(bone, one.head_centre)
+        plane = symmetry.find_symmetry_plane(bone, opening.head_centre)
     except InputRefused as refused:
         return None, {"unused": refused.message}
     if plane.residual > _LOPSIDED:
@@ -264,10 +243,10 @@ def _symmetry(bone: Volume, one: Opening) -> tuple[SymmetryPlane | None, dict[st
 
 
 def _plate(
-    bone: Volume, one: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
+    bone: Volume, opening: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
     """Both plates of one opening."""
-    vault = radius_measurement.measure_around(bone, one)
+    vault = radius_measurement.measure_around(bone, opening)
     mirrored = None if plane is None else _other_side(bone, vault, plane)
     expected = None if learned is None else _expected(bone, vault, learned)
     nodes = max(1, round(_NODES / vault.step_mm))
@@ -289,25 +268,24 @@ def _other_side(bone: Volume, vault: RadiusMap, plane: SymmetryPlane) -> tuple[A
 
 
 def _expected(bone: Volume, vault: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
-    """Outer and inner radii that a prior lets expect, continued where it does not reach; None where it never does."""
-    told = predict_around(learned, bone, vault)
-    if not (np.isfinite(told.outer) & vault.hole).any():
+    """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
+    predicted = predict_around(learned, bone, vault)
+    if not (np.isfinite(predicted.outer) & vault.hole).any():
         return None
     outer, inner = (
         ndimage.gaussian_filter(filled_from_nearest(radius), _RAYS_APART / vault.step_mm)
-        for radius in (told.outer, told.inner)
+        for radius in (predicted.outer, predicted.inner)
     )
     return outer, inner
 
 
-def _piece(plate: Plate, one: Opening, bone: Volume) -> NDArray[np.bool_]:
-    """The patch between both plates."""
+def _solid(plate: Plate, opening: Opening, bone: Volume) -> NDArray[np.bool_]:
+    """The voxels between both plates; none where bone holds no plate."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
     outer, inner = radius_voxels.thickened(plate.chart, outer=plate.outer, inner=plate.inner)
-    return voxel_pieces.keep_main_piece(
-        radius_voxels.voxels_between(plate.chart, bone, outer=outer, inner=inner), one.sheet.voxels
-    )
+    between = radius_voxels.voxels_between(plate.chart, bone, outer=outer, inner=inner)
+    return voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
 
 
 def thinned(values: Array, nodes: int) -> Array:

@@ -14,12 +14,12 @@ from typing import Any
 
 from ..evaluation.paper_tables import balloon_ranges, count_statuses
 from ..geometry.mesh_check import MeshReport, check_mesh
+from ..grid import AxisOrder
 from ..implant.mass import weigh_implant
-from ..methods.catalogue import METHODS, default_options
+from ..methods.catalogue import default_options, method_names
 from ..pipeline.run import RunResult
 from ..prosthesis import Prosthesis
 from ..readers import LoadReport
-from ..volume import AxisOrder
 from . import files
 from .guard import check_writes
 from .manifest import MANIFEST
@@ -129,7 +129,7 @@ def made_record(made: Prosthesis) -> dict[str, Any]:
         "not_for_clinical_use": True,
         "world": "DICOM LPS, mm",
         "method": made.method,
-        "parameters": (default_options(made.method) if made.method in METHODS else {}) | made.parameters,
+        "parameters": (default_options(made.method) if made.method in method_names() else {}) | made.parameters,
         "slices": slices,
         "slice_counts": count_statuses(slices),
         "balloons": balloon_ranges(slices),

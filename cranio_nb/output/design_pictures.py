@@ -8,7 +8,7 @@ from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
 from ..evaluation.against_truth import TruthCheck
 from ..evaluation.paper_tables import pick_slices
-from ..methods.slicewise import SlicedDesign, SliceResult
+from ..methods.slicewise.slices import SlicedDesign, SliceResult
 from ..pipeline.run import RunResult
 from ..prosthesis import INNER, OUTER
 from .pages import Shot, lowest_shown, shot
@@ -104,11 +104,12 @@ def distance_shots(result: RunResult) -> list[Shot]:
 
 def _slice_caption(title: str, s: SliceResult) -> str:
     """Angles and steps of a slice, outer and inner; for a slice without its own curves, why it has none."""
-    if s.status != "balloon":
+    inflation = s.inflation
+    if inflation is None:
         return f"{_capital(title)}: {s.status} ({s.reason.rstrip('.')})."
     angles = "; ".join(
-        f"{side}: θ₀ {s.values['theta0'][i]:.0f}°, θ₁ {s.values['theta1'][i]:.0f}°, {_steps(s.values['n_iter'][i])}"
-        + ("" if s.values["converged"][i] else ", not at rest")
+        f"{side}: θ₀ {inflation.theta0_deg[i]:.0f}°, θ₁ {inflation.theta1_deg[i]:.0f}°, {_steps(inflation.n_iter[i])}"
+        + ("" if inflation.converged[i] else ", not at rest")
         for i, side in enumerate(("outer", "inner"))
     )
     return f"{_capital(title)}: {angles}."

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CannotWrite
-from ..volume import AxisOrder, Volume
+from ..grid import AxisOrder
+from ..volume import Volume
 from .files import write_whole
 
 _AFFINE_TOLERANCE_MM = 1e-3

@@ -19,7 +19,7 @@ from ..evaluation.rim_gap import rim_gap
 from ..opening import Opening
 from ..prosthesis import INNER, OUTER, RIM, Prosthesis
 from ..volume import Volume
-from .run import Prepared
+from .preparation import Prepared
 from .trial import Attempt, Contender, Trial, attempt_apart
 
 _UNKNOWN = float("nan")
@@ -32,7 +32,7 @@ class Measure:
     Parameters
     ----------
     label, short, unit : str
-        Words of its head, on a page and where there is little room.
+        Words of its head, on a page and where there is little space.
     digits : int
         Decimals shown.
     best : {"high", "low", ""}
@@ -87,7 +87,19 @@ class Reference:
 
     @classmethod
     def of(cls, truth: Volume, bone: Volume, largest: Opening) -> Reference:
-        """From the mask of the missing bone, the skull with the hole and its largest opening."""
+        """From the mask of the missing bone.
+
+        Parameters
+        ----------
+        truth, bone : Volume
+            Bool masks of the missing bone and of the skull with the hole, on one grid.
+        largest : Opening
+            From whose head centre the sides are told apart.
+
+        Returns
+        -------
+        Reference
+        """
         true = true_prosthesis(truth, bone, largest.head_centre)
         return cls(true, _thickness(true))
 
@@ -124,12 +136,23 @@ class Comparison:
 
     @property
     def made(self) -> dict[str, Prosthesis]:
-        """The prostheses by the names of their contenders."""
+        """The prostheses by the names of their contenders.
+
+        Returns
+        -------
+        dict of str to Prosthesis
+        """
         return {t.contender.name: t.prosthesis for t in self.trials if t.prosthesis is not None}
 
     @property
     def top(self) -> float:
-        """Upper end of the one colour scale of all distance maps, mm: a round number above 99 % of all distances."""
+        """Upper end of the one colour scale of all distance maps: a round number above 99 % of all distances.
+
+        Returns
+        -------
+        float
+            mm.
+        """
         every = [d for sides in self.distances.values() for d in sides.values()]
         high = float(np.percentile(np.concatenate(every), 99)) if every else 0.0
         return max(0.5, float(np.ceil(2 * high) / 2))
@@ -153,12 +176,30 @@ def compare(
         How a trial is run; by default each in a process of its own, one after the other.
     progress : callable, optional
         Called with (name of the contender, fraction done).
+
+    Returns
+    -------
+    Comparison
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from cranio_nb.output.nifti_files import write_nifti
+    >>> from cranio_nb.pipeline.trial import attempt, contenders
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "burr_hole", 0)
+    >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")
+    >>> write_nifti(cn.Volume(case.implant, case.affine), "truth.nii.gz")
+    >>> prepared = cn.prepare("skull.nii.gz", truth="truth.nii.gz")
+    >>> found = cn.compare(prepared, contenders(["hull", "hull:paper"]), attempt=attempt)
+    >>> {name: round(row["dice"], 1) for name, row in zip(found.made, found.rows)}
+    {'hull': 1.0, 'hull:paper': 0.8}
     """
-    tell = progress or (lambda step, done: None)
+    report = progress or (lambda step, done: None)
     truth = None if case.truth is None else Reference.of(case.truth, case.bone, case.openings[0])
     trials, rows = [], []
     for i, contender in enumerate(contenders):
-        tell(contender.name, i / len(contenders))
+        report(contender.name, i / len(contenders))
         trials.append(attempt(case.bone, case.openings, contender))
         rows.append(measure(trials[-1], case.bone, truth))
     made = {t.contender.name: t.prosthesis for t in trials if t.prosthesis is not None}
@@ -179,6 +220,11 @@ def measure(trial: Trial, bone: Volume, truth: Reference | None = None) -> dict[
         The skull it was given.
     truth : Reference, optional
         The missing bone.
+
+    Returns
+    -------
+    dict of str to float
+        In the units of `MEASURES`.
     """
     found = dict.fromkeys(MEASURES, _UNKNOWN)
     made = trial.prosthesis
@@ -225,7 +271,18 @@ def _thickness(made: Prosthesis) -> NDArray[np.float64]:
 
 
 def agreement(made: dict[str, Prosthesis]) -> dict[tuple[str, str], tuple[float, float]]:
-    """Dice and mean surface distance (mm) between the patches of each two prostheses."""
+    """Dice and mean surface distance between the patches of each two prostheses.
+
+    Parameters
+    ----------
+    made : dict
+        Name -> prosthesis; those without a patch are left out.
+
+    Returns
+    -------
+    dict
+        Two names -> (Dice, mean surface distance in mm).
+    """
     patches = {name: p.patch for name, p in made.items() if p.patch is not None}
     return {
         (a, b): (scores.dice(patches[a], patches[b]), scores.assd(patches[a], patches[b]))
@@ -234,7 +291,17 @@ def agreement(made: dict[str, Prosthesis]) -> dict[tuple[str, str], tuple[float,
 
 
 def records(comparison: Comparison) -> list[dict[str, Any]]:
-    """The table, one dict per contender: name, method, preset, parameters, status, fault, measures (None for none)."""
+    """The table of a comparison, JSON-able.
+
+    Parameters
+    ----------
+    comparison : Comparison
+
+    Returns
+    -------
+    list of dict
+        One per contender: name, method, preset, parameters, status, fault, measures (None for none).
+    """
     return [
         {
             "name": trial.contender.name,

@@ -1,17 +1,18 @@
 """A scan on disk -> a designed and measured prosthesis: the whole pipeline as one call.
 
-For the command line, notebooks and studies; nothing is written here (see `outputs`).
+For the command line, notebooks and studies; nothing is written here (see `output`).
 """
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Collection
-from dataclasses import dataclass, field, replace
+from collections.abc import Collection
+from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
 
-from ..errors import InputRefused, NoOpening
+import numpy as np
+
+from ..errors import InputRefused
 from ..evaluation.against_truth import TruthCheck, check_truth
 from ..evaluation.opening_size import OpeningSize, measure_opening
 from ..evaluation.paper_tables import count_not_converged, count_statuses
@@ -21,40 +22,12 @@ from ..methods.catalogue import default_options
 from ..methods.design import check_request, design
 from ..opening import Opening
 from ..prosthesis import RIM, Prosthesis
-from ..readers import Finding, LoadReport, read_ct
-from ..stages.segmentation import bone_of, threshold_of
-from ..vault.opening_search import find_openings
-from ..volume import Volume, same_grid
+from ..readers import Finding
+from ..volume import Volume
+from .preparation import Clock, Prepared, Progress, check_margin, prepare, touches_border
 
-Progress = Callable[[str, float], None]
 _THIN = 2.0  # mm: a wall that workshops begin to warn about
-
-
-@dataclass(frozen=True, eq=False)
-class Prepared:
-    """A scan as every method gets it.
-
-    Parameters
-    ----------
-    load : LoadReport
-    bone : Volume
-        Bool mask the design stands on.
-    openings : tuple of Opening
-        The openings to close, the largest first.
-    threshold : float or None
-        HU of the bone threshold; None for a mask.
-    truth : Volume or None
-        Bool mask of the missing bone on the grid of `bone`.
-    seconds : dict of str to float
-        Time of each step.
-    """
-
-    load: LoadReport
-    bone: Volume
-    openings: tuple[Opening, ...]
-    threshold: float | None
-    truth: Volume | None
-    seconds: dict[str, float]
+_BESIDE = 20.0  # mm beside an opening within which a patch may reach
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +40,7 @@ class RunResult:
         The scan and its openings.
     sizes : tuple of OpeningSize
         Place and size of each opening.
-    preset : {"default", "paper"}
+    preset : str
     prosthesis : Prosthesis
     mesh : MeshReport
     rim : GapStats or None
@@ -110,9 +83,9 @@ def run_design(
     path : path
         DICOM folder, NIfTI or NRRD file with a CT in HU or a bone mask.
     method : str
-        A key of `catalogue.METHODS`.
-    preset : {"default", "paper"}
-        Options to start from.
+        A name of the catalogue.
+    preset : str
+        Options to start from: "default", or a preset of the method such as "paper".
     options : dict, optional
         Options of the method that differ from the preset.
     mask : bool, optional
@@ -138,93 +111,35 @@ def run_design(
         What cannot be read, designed or compared safely.
     NoOpening
         When there is nothing to close.
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from cranio_nb.output.nifti_files import write_nifti
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "burr_hole", 0)
+    >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")
+    >>> result = cn.run_design("skull.nii.gz", method="hull", options={"axial": True})
+    >>> result.prosthesis.parameters, result.mesh.sound, result.case.bone.shape
+    ({'axial': True, 'smooth': True}, True, ...)
     """
     options = dict(options or {})
     check_request(method, preset, options)
-    tell = progress or (lambda step, done: None)
-    case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=tell)
-    clock = _Clock(case.seconds)
+    report = progress or (lambda step, done: None)
+    case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=report)
+    clock = Clock(case.seconds)
     made = design_inside(
-        case.bone, case.openings, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done)
+        case.bone, case.openings, method, preset, options, lambda step, done: report(step, 0.4 + 0.4 * done)
     )
     clock.lap("design")
-    tell("measuring", 0.8)
+    report("measuring", 0.8)
     mesh = check_mesh(made.mesh)
     rim = rim_gap(made.surface(RIM), case.bone) if (made.sides == RIM).any() else None
     check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.openings[0].head_centre)
     clock.lap("measures")
     found = _findings(made, mesh, case.openings)
-    sizes = tuple(measure_opening(one) for one in case.openings)
+    sizes = tuple(measure_opening(opening) for opening in case.openings)
     return RunResult(case, sizes, preset, made, mesh, rim, check, found, clock.seconds)
-
-
-def prepare(
-    path: str | PathLike[str],
-    *,
-    mask: bool | None = None,
-    threshold: float | None = None,
-    planes: tuple[int, int] | None = None,
-    truth: str | PathLike[str] | None = None,
-    allow: Collection[str] = (),
-    progress: Progress | None = None,
-) -> Prepared:
-    """Read a scan and find its openings: all that comes before a design. Parameters and errors as in `run_design`."""
-    tell = progress or (lambda step, done: None)
-    clock = _Clock()
-    tell("reading", 0.0)
-    scan, load = read_ct(path, mask=mask, allow=allow, progress=lambda i, n: tell("reading", 0.3 * i / n))
-    known = None if truth is None else read_truth(truth, scan)
-    clock.lap("read")
-    tell("bone", 0.3)
-    bone = bone_of(scan, threshold)
-    openings = find_openings(bone) if planes is None else within_planes(find_openings(bone), planes)
-    _check_room([one.sheet for one in openings], "The opening of the skull")
-    clock.lap("bone and openings")
-    return Prepared(load, bone, openings, threshold_of(scan, threshold), known, clock.seconds)
-
-
-def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tuple[Opening, ...]:
-    """The parts of the openings in planes first..last (both included); openings elsewhere are left.
-
-    Raises
-    ------
-    InputRefused
-        ``BadPlanes`` when the range is empty or outside the volume.
-    NoOpening
-        ``NoOpening`` when no opening meets it.
-    """
-    first, last = planes
-    n_planes = openings[0].sheet.shape[0]
-    if not 0 <= first <= last < n_planes:
-        raise InputRefused("BadPlanes", f"Planes {first} to {last} are not a range within 0 to {n_planes - 1}.")
-    parts = []
-    for one in openings:
-        voxels = one.sheet.voxels.copy()
-        voxels[:first] = voxels[last + 1 :] = False
-        if voxels.any():
-            parts.append(replace(one, sheet=one.sheet.with_voxels(voxels)))
-    if not parts:
-        spans = ", ".join(f"{a} to {b - 1}" for a, b in (one.planes for one in openings))
-        message = f"No opening lies in planes {first} to {last}; openings were found in planes {spans}."
-        raise NoOpening("NoOpening", message)
-    return tuple(parts)
-
-
-def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
-    """Read the mask of the missing bone that belongs to a scan.
-
-    Raises
-    ------
-    InputRefused
-        ``GridMismatch`` or ``EmptyMask``, or what reading refuses.
-    """
-    truth, _ = read_ct(path, mask=True)
-    if not same_grid(scan, truth):
-        message = f"The truth has shape {truth.shape}, the scan {scan.shape}, or they stand at different places."
-        raise InputRefused("GridMismatch", message, "Give a truth mask on the scan's own grid.")
-    if not truth.voxels.any():
-        raise InputRefused("EmptyMask", "The truth mask is empty; there is nothing to compare with.")
-    return truth
 
 
 def design_inside(
@@ -235,14 +150,39 @@ def design_inside(
     options: dict[str, Any],
     progress: Progress | None = None,
 ) -> Prosthesis:
-    """`methods.design`, refused where the prosthesis reaches the edge of the image (``OpeningLeavesImage``)."""
+    """`methods.design`, refused where the prosthesis reaches the edge of the image.
+
+    Parameters
+    ----------
+    bone, openings, method, preset, options, progress
+        As for `methods.design.design`.
+
+    Returns
+    -------
+    Prosthesis
+
+    Raises
+    ------
+    InputRefused
+        ``OpeningLeavesImage`` where the opening lies beside that edge, ``PatchLeavesOpening`` where the patch runs
+        away from the opening; and what `design` refuses.
+    """
     made = design(bone, openings, method=method, preset=preset, progress=progress, **options)
-    _check_room([] if made.patch is None else [made.patch], "The prosthesis")
+    _check_patch(made, openings)
     return made
 
 
 def parameters_used(result: RunResult) -> dict[str, Any]:
-    """Every parameter of the method with the value it had."""
+    """Every parameter of the method with the value it had.
+
+    Parameters
+    ----------
+    result : RunResult
+
+    Returns
+    -------
+    dict
+    """
     return default_options(result.prosthesis.method) | result.prosthesis.parameters
 
 
@@ -266,24 +206,26 @@ def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...])
     return tuple(found)
 
 
-def _check_room(masks: list[Volume], what: str) -> None:
-    """Refuse what touches the border of its grid: it may go on outside."""
-    if any(mask.voxels.take(end, axis).any() for mask in masks for axis in range(3) for end in (0, -1)):
-        raise InputRefused(
-            "OpeningLeavesImage",
-            f"{what} reaches the edge of the image, where it would be cut off.",
-            "Use a scan that covers the whole opening and some room around it.",
+def _check_patch(made: Prosthesis, openings: tuple[Opening, ...]) -> None:
+    """Refuse a patch that touches the border of its grid, and say whether the image or the method is to blame."""
+    if made.patch is None or not touches_border(made.patch):
+        return
+    away = _farthest(made.patch, openings)
+    if away > _BESIDE:
+        message = (
+            f"The method {made.method} did not bridge the opening: in places its patch runs up to {away:.0f} mm away"
+            " from it, to the edge of the image."
         )
+        raise InputRefused("PatchLeavesOpening", message, "Use another method or preset.")
+    check_margin(made.patch, "The prosthesis")
 
 
-class _Clock:
-    """Seconds of each step."""
-
-    def __init__(self, before: dict[str, float] | None = None) -> None:
-        self.seconds = dict(before or {})
-        self._last = time.perf_counter()
-
-    def lap(self, name: str) -> None:
-        now = time.perf_counter()
-        self.seconds[name] = now - self._last
-        self._last = now
+def _farthest(patch: Volume, openings: tuple[Opening, ...]) -> float:
+    """Largest distance of a patch's voxels from the boxes around the openings, mm."""
+    index = np.argwhere(patch.voxels)
+    distances = []
+    for opening in openings:
+        held = np.argwhere(opening.sheet.voxels)
+        beyond = np.maximum(np.maximum(held.min(axis=0) - index, index - held.max(axis=0)), 0)
+        distances.append(np.linalg.norm(beyond * patch.spacing, axis=1))
+    return float(np.min(distances, axis=0).max())

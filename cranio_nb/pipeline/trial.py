@@ -20,11 +20,13 @@ from typing import Any
 import numpy as np
 
 from ..errors import CranioError, InputRefused, NoOpening
-from ..methods.catalogue import METHODS, method_module
+from ..methods.catalogue import find_method, method_names, preset_names
+from ..methods.design import check_request
+from ..methods.transfer import pack_methods, unpack_methods
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..volume import Volume
-from .run import check_request, design_inside
+from .run import design_inside
 
 STATUSES = ("done", "refused", "no patch", "broken")
 """How a trial ended: with a prosthesis; with a refusal of the method to serve this input; without anything bridged,
@@ -38,8 +40,9 @@ class Contender:
     Parameters
     ----------
     method : str
-        A key of `catalogue.METHODS`.
-    preset : {"default", "paper"}
+        A name of the catalogue.
+    preset : str
+        "default", or a preset of the method.
     options : dict
         Options that differ from the preset.
     """
@@ -50,7 +53,13 @@ class Contender:
 
     @property
     def name(self) -> str:
-        """``method``, or ``method:paper``."""
+        """The name in tables.
+
+        Returns
+        -------
+        str
+            ``method``, or ``method:preset``.
+        """
         return self.method if self.preset == "default" else f"{self.method}:{self.preset}"
 
 
@@ -94,34 +103,49 @@ def contenders(names: Sequence[str] = ()) -> tuple[Contender, ...]:
     Parameters
     ----------
     names : sequence of str
-        ``method`` or ``method:preset``. By default every method of the catalogue, and the paper's preset where a
-        method has one.
+        ``method`` or ``method:preset``. By default every method of the catalogue with each of its presets.
+
+    Returns
+    -------
+    tuple of Contender
 
     Raises
     ------
     InputRefused
         ``UnknownMethod`` or ``UnknownPreset``.
     """
+    if not names:
+        return tuple(Contender(method, preset) for method in method_names() for preset in preset_names(method))
     found = []
-    for name in dict.fromkeys(names) or METHODS:
+    for name in dict.fromkeys(names):
         method, _, preset = name.partition(":")
         check_request(method, preset or "default", {})
         found.append(Contender(method, preset or "default"))
-        if not names and hasattr(method_module(method), "paper_options"):
-            found.append(Contender(method, "paper"))
     return tuple(found)
 
 
 def attempt(bone: Volume, openings: Sequence[Opening], contender: Contender) -> Trial:
-    """Let a contender design in this process; never raises for what a method does."""
-    method_module(contender.method)  # loaded before the clock runs
+    """Let a contender design in this process; never raises for what a method does.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    openings : sequence of Opening
+    contender : Contender
+
+    Returns
+    -------
+    Trial
+    """
+    find_method(contender.method)  # loaded before the clock runs
     made, status, code, message = None, "done", "", ""
     began, cpu = time.perf_counter(), time.process_time()
     try:
         made = design_inside(bone, tuple(openings), contender.method, contender.preset, contender.options)
     except CranioError as error:
         status, code, message = _status(error), error.code, str(error)
-    except Exception as error:  # a rival's fault is a row of the table, not the end of it
+    except Exception as error:  # a method's fault is a row of the table, not the end of it
         code = type(error).__name__
         status, message = "broken", f"Something unforeseen went wrong in the method ({code})."
     spent = time.perf_counter() - began, time.process_time() - cpu
@@ -132,6 +156,15 @@ def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contende
     """`attempt` in a new process, which gets the masks as memory-mapped files and gives back what it made.
 
     A process that dies, e.g. for lack of memory, is a trial with the status "broken".
+
+    Parameters
+    ----------
+    bone, openings, contender
+        As for `attempt`.
+
+    Returns
+    -------
+    Trial
     """
     with tempfile.TemporaryDirectory(prefix="cranio-nb-") as folder:
         for name, volume in [("bone", bone), *((str(i), one.sheet) for i, one in enumerate(openings))]:
@@ -139,7 +172,7 @@ def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contende
         centres = [one.head_centre for one in openings]
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
             try:
-                trial, patch = pool.submit(_child, folder, bone.affine, centres, contender).result()
+                trial, patch = pool.submit(_child, folder, bone.affine, centres, contender, pack_methods()).result()
             except BrokenProcessPool:
                 message = "The process of the method ended before its time; it may have run out of memory."
                 return Trial(contender, "broken", None, "ProcessEnded", message, *[float("nan")] * 3)
@@ -151,10 +184,15 @@ def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contende
 
 
 def peak_memory() -> float:
-    """Largest resident memory this process ever had, MB (10^6 bytes); nan where the system does not tell.
+    """Largest resident memory that this process ever had.
 
     That is Python with its libraries, the masks, and what the method needed on top of them: how much memory a machine
     must have free. A bare process with numpy, scipy and scikit-image holds about 100 MB.
+
+    Returns
+    -------
+    float
+        MB (10^6 bytes); nan where the system gives no number.
 
     Notes
     -----
@@ -173,12 +211,13 @@ def peak_memory() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1e-6 if sys.platform == "darwin" else 1024e-6)
 
 
-def _child(folder: str, affine: Any, centres: list[Any], contender: Contender) -> tuple[Trial, Any]:
+def _child(folder: str, affine: Any, centres: list[Any], contender: Contender, methods: bytes) -> tuple[Trial, Any]:
     """The trial without its patch, and the flat indices of the patch: they are small, the grid is not."""
 
     def load(name: str) -> Volume:
         return Volume(np.asarray(np.load(Path(folder) / f"{name}.npy", mmap_mode="r")), affine)
 
+    unpack_methods(methods)
     openings = [Opening(load(str(i)), centre) for i, centre in enumerate(centres)]
     trial = attempt(load("bone"), openings, contender)
     if trial.prosthesis is None or trial.prosthesis.patch is None:
@@ -188,7 +227,7 @@ def _child(folder: str, affine: Any, centres: list[Any], contender: Contender) -
 
 
 def _status(error: CranioError) -> str:
-    # the openings lie inside the image, as was seen before; a patch that does not is the method's failure
-    if isinstance(error, NoOpening) or error.code == "OpeningLeavesImage":
+    # the openings lie inside the image, as was checked before; a patch that does not is the method's failure
+    if isinstance(error, NoOpening) or error.code in ("OpeningLeavesImage", "PatchLeavesOpening"):
         return "no patch"
     return "refused" if isinstance(error, InputRefused) else "broken"

@@ -21,6 +21,7 @@ from .shape_prior import Prior, conditional_mean
 from .skull_points import sample_surface
 from .vault_radii import (
     VAULT_DEG,
+    local_median,
     measure_vault,
     rays_near,
     rays_without_bone,
@@ -78,20 +79,22 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     if frame.misfit > _MISFIT_MM:
         message = f"The skull lies {frame.misfit:.1f} mm off the prior's mean head; {_MISFIT_MM:g} mm is the most."
         raise InputRefused("PriorDoesNotFit", message, "Design without the prior, or learn one from such skulls.")
-    known = _trusted_radii(prior, bone, radius_map, frame)
+    # what the skull shows, without its holes and their rims
+    middle = prior.samples.mean(axis=0)
+    radii = measure_vault(bone, frame, middle[0])
+    usual = middle + local_median(radii - middle)
+    known = np.where(_untrusted(radii, radius_map, frame, middle), np.nan, without_outliers(radii, usual))
+    # what follows from it, on the rays of the map
     wanted = _rays_beside(radius_map.grid, frame)
     points = frame.to_world(vault_rays()[wanted] * conditional_mean(prior, known, wanted)[..., None])
     outer, inner = (_radius_on(radius_map.grid, frame, side) for side in points)
     return Prediction(outer=outer, inner=inner, frame=frame)
 
 
-def _trusted_radii(prior: Prior, bone: Volume, radius_map: RadiusMap, frame: HeadFrame) -> Array:
-    """Outer and inner radius of the skull along `vault_rays`, nan in holes and at their rims, shape (2, m), mm."""
-    middle = prior.samples.mean(axis=0)
-    radii = measure_vault(bone, frame, middle[0])
+def _untrusted(radii: Array, radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mask:
+    """Which of the `vault_rays` lead into holes or their rims; `radii` (2, m) of the skull, `middle` of the mean."""
     hole = _rays_through(radius_map, frame, middle)
-    unknown = rays_near(hole, _RIM_MM) | rays_near(rays_without_bone(radii) & ~hole, _FREE_RIM_MM)
-    return np.where(unknown, np.nan, without_outliers(radii, middle))
+    return rays_near(hole, _RIM_MM) | rays_near(rays_without_bone(radii) & ~hole, _FREE_RIM_MM)
 
 
 def _rays_beside(grid: RayGrid, frame: HeadFrame) -> Mask:

@@ -40,6 +40,7 @@ def save_prior(prior: Prior, path: Path) -> None:
         ``CannotWrite`` when the system refuses; what was there before is still there.
     """
     outer, inner, radii = (np.asarray(a, np.float32) for a in (prior.mean.outer, prior.mean.inner, prior.radii))
+    # written beside its goal and moved there in one step
     try:
         with tempfile.TemporaryDirectory(prefix=".part-", dir=path.absolute().parent) as folder:
             part = Path(folder) / "prior.npz"
@@ -66,6 +67,7 @@ def load_prior(path: Path) -> Prior:
     InputRefused
         ``NoPrior`` when there is no such file, or when it is no sound prior of this version.
     """
+    # without pickle: whatever the file holds, none of it is run
     try:
         with open(path, "rb") as file, np.load(file, allow_pickle=False) as held:
             version = int(held["version"])
@@ -85,6 +87,7 @@ def load_prior(path: Path) -> Prior:
 def _checked(arrays: dict[str, NDArray]) -> Prior:
     """The prior in the arrays of a file, if they have the form of one."""
     shapes = {"inside": (None, 3), "outside": (None, 3), "radii": (None, 2, len(vault_rays()))}
+    # None stands for any number above 0
     for name, shape in shapes.items():
         array = arrays.get(name, np.zeros(0))
         good = array.dtype == np.float32 and array.ndim == len(shape) and len(array) > 0

@@ -46,6 +46,7 @@ def learn_prior(bones: Iterable[Volume], progress: Callable[[str, float], None] 
         ``TooFewSkulls``; ``NoVault``.
     """
     report = progress or (lambda step, done: None)
+    # the masks stay, at one bit a voxel: they are measured once the mean head is known
     packed, skulls = [], []
     for bone in bones:
         packed.append(_Packed.of(bone))
@@ -53,6 +54,7 @@ def learn_prior(bones: Iterable[Volume], progress: Callable[[str, float], None] 
     if len(packed) < MIN_SKULLS:
         message = f"A prior needs {MIN_SKULLS} intact skulls; {len(packed)} could be used."
         raise InputRefused("TooFewSkulls", message, "Give a folder with more scans of whole heads.")
+    # their radii in the frame of their mean head
     mean, frames = _lay_together(packed, skulls, report)
     middle = interpolate_radius(mean.outer)
     radii = []
@@ -109,6 +111,7 @@ def _lay_together(
         for i, skull in enumerate(skulls):
             report("aligning", (turn + i / len(skulls)) / 3)
             frames.append(align(skull, mean, affine=affine))
+        # the mean head of all skulls is the goal of the next round
         frames = centre_frames(frames, skulls)
         outlines = [measure_outline(p.bone, f, directions) for p, f in zip(packed, frames, strict=True)]
         mean = mean_head(np.array(outlines), directions)
@@ -119,5 +122,5 @@ def _completed(radii: Array) -> Array:
     """Radius maps (n, 2, m) of intact skulls; where a ray is missing or far off, the offset around it holds."""
     middle = np.nanmedian(np.concatenate([radii, mirror_radii(radii)]), axis=0)
     usual = np.stack([middle + local_median(one - middle) for one in radii])
-    sound = np.stack([without_outliers(one, middle) for one in radii])
+    sound = np.stack([without_outliers(one, around) for one, around in zip(radii, usual, strict=True)])
     return np.where(np.isfinite(sound), sound, usual)

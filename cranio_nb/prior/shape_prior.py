@@ -129,8 +129,10 @@ def _covariance(spread: Array, laid: Array, a: NDArray[np.intp], b: NDArray[np.i
     """
     rays = vault_rays()
     squared = np.maximum(2 - 2 * rays[a] @ rays[b].T, 0) * RADIUS_MM**2
+    # taper and k depend on the chord d between the rays alone
     taper = np.exp(squared / (-2 * _TAPER_MM**2))
     kernel = sum(height**2 * np.exp(squared / (-2 * length**2)) for height, length in _KERNEL)
+    # the learned part and h depend on the sides as well
     parts = []
     for i in (0, 1):
         learned = [spread[:, i, a].T @ spread[:, j, b] * taper + laid[i, a] @ laid[j, b].T for j in (0, 1)]

@@ -97,6 +97,7 @@ def read_intact_skulls(
     for i, path in enumerate(scans):
         if progress:
             progress("reading", i / len(scans))
+        # a scan that cannot be used is told about, and the next one read
         try:
             scan = read_ct(path)[0]
             bone = bone_of(scan, None if scan.voxels.dtype == bool else threshold)
@@ -139,6 +140,7 @@ def measure_learning_curve(
         for one in range(n):
             if progress:
                 progress("checking", (round_ + one / n) / len(counts))
+            # as many of the others as asked for, and a hole in the one left out
             others = np.random.default_rng(one).permutation(np.delete(np.arange(n), one))[:count]
             place = np.array(_HOLES[one % len(_HOLES)])
             errors.append(_error(prior.subset(others), prior.radii[one].astype(float), place))

@@ -102,24 +102,23 @@ def interpolate_radius(points: Array) -> Array:
     return (radius[at] * weight).sum(axis=1) / weight.sum(axis=1)
 
 
-def without_outliers(radii: Array, middle: Array) -> Array:
-    """Radii with nan where a ray is far off its surroundings.
+def without_outliers(radii: Array, usual: Array) -> Array:
+    """Radii with nan where a ray is far off what is usual around it.
 
     Parameters
     ----------
     radii : ndarray, shape (2, m)
         mm; nan where unknown.
-    middle : ndarray, shape (2, m)
-        Radii of the mean head, mm.
+    usual : ndarray, shape (2, m)
+        The mean head's radii moved by the `local_median` of what the skull differs from them, mm.
 
     Returns
     -------
     ndarray, shape (2, m)
         mm.
     """
-    offset = radii - middle
     with np.errstate(invalid="ignore"):
-        good = np.abs(offset - local_median(offset)) < _OUTLIER_MM
+        good = np.abs(radii - usual) < _OUTLIER_MM
     return np.where(good, radii, np.nan)
 
 

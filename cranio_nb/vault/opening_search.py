@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused, NoOpening
+from ..grid import inside_grid
 from ..opening import Opening
-from ..volume import Volume, inside_grid
+from ..volume import Volume
 from .orientation import head_axes, head_centre
 from .ray_casting import FAR_MM, NEAR_MM
 from .ray_grid import RayGrid, filled_from_nearest
@@ -96,6 +97,13 @@ def find_openings(bone: Volume, *, min_diameter_mm: float = 8.0) -> tuple[Openin
     InputRefused
         ``OpeningLeavesImage`` when an opening reaches the edge of the image, so that part of its rim is missing;
         ``NoVault`` when the mask holds no skull vault.
+
+    Examples
+    --------
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "multiple", 0)
+    >>> len(find_openings(Volume(case.bone, case.affine)))
+    3
     """
     outermost = measure_outermost_bone(bone)
     groups = [rays for rays in open_rays(outermost, min_diameter_mm) if not _is_thin_bone(bone, outermost, rays)]
@@ -120,6 +128,7 @@ def measure_outermost_bone(bone: Volume) -> OutermostBone:
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / _STEP_DEG))
     grid = RayGrid(head_centre(bone), head_axes(bone), np.radians(_STEP_DEG), 2 * half + 1)
     directions = grid.directions
+    # outwards: the last bone met stays
     start, step = bone.to_voxel(grid.centre), bone.steps(directions)
     radius, last_inside = np.full(directions.shape[:2], np.nan), np.zeros(directions.shape[:2])
     for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM):
@@ -184,6 +193,7 @@ def _is_thin_bone(bone: Volume, outermost: OutermostBone, rays: NDArray[np.bool_
     if diameter > _THIN_HOLE_MM:
         return False
     rim = ndimage.binary_dilation(rays, iterations=2) & np.isfinite(outermost.radius)
+    # how much bone lies on the rays of the rim
     depths = np.arange(-14.0, 1.5, 0.25)
     lengths = (outermost.radius[rim][:, None] + depths)[..., None]
     points = outermost.grid.centre + outermost.grid.directions[rim][:, None, :] * lengths

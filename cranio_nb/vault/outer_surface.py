@@ -53,7 +53,7 @@ class OuterSurface:
         -------
         ndarray of bool, shape (n, n)
         """
-        return np.isfinite(self.normals).all(axis=-1)
+        return np.asarray(np.isfinite(self.normals).all(axis=-1))
 
     @cached_property
     def interior(self) -> Array:
@@ -91,6 +91,7 @@ class OuterSurface:
         normals : ndarray, shape (k, 3)
             Of the surface where the points' rays meet it.
         """
+        # radius and normal where each point's own ray meets the surface
         at = self.grid.locate(offsets)
         radius, *normal = (
             ndimage.map_coordinates(values, at, order=1, cval=np.nan)

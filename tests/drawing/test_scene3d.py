@@ -8,7 +8,7 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
-from shapes import box
+from shapes import cube
 
 from cranio_nb.drawing import scene3d
 from cranio_nb.drawing.palette import BLUE, rgb_of
@@ -24,7 +24,7 @@ def static(monkeypatch):
 
 
 def test_a_static_scene_is_a_picture_with_words(static):
-    scene = scene3d.show_meshes(box((40, 40, 40)), box((10, 10, 10), (30, 0, 0)), labels=["large", "small"], alt=ALT)
+    scene = scene3d.show_meshes(cube(40), cube(10, (30, 0, 0)), labels=["large", "small"], alt=ALT)
     data, metadata = scene._repr_mimebundle_()
     assert set(data) == {"image/png", "text/plain"} and metadata["image/png"]["alt"] == ALT
     assert data["text/plain"] == "3-D scene: large, small (24 triangles)."
@@ -32,7 +32,7 @@ def test_a_static_scene_is_a_picture_with_words(static):
 
 
 def test_a_face_covers_as_many_pixels_as_its_size_says(static):
-    scene = scene3d.show_meshes(box((40, 40, 40)), alt=ALT, towards=(0, -1, 0))
+    scene = scene3d.show_meshes(cube(40), alt=ALT, towards=(0, -1, 0))
     blue = np.array(rgb_of(BLUE), float)
     share = scene.picture @ blue / np.linalg.norm(scene.picture, axis=2).clip(1) / np.linalg.norm(blue)
     rows, cols = np.nonzero(share > 0.995)
@@ -40,12 +40,12 @@ def test_a_face_covers_as_many_pixels_as_its_size_says(static):
 
 
 def test_the_last_mesh_is_seen_in_front(static):
-    scene = scene3d.show_meshes(box((40, 40, 40)), box((10, 10, 10), (30, 0, 0)), alt=ALT)
+    scene = scene3d.show_meshes(cube(40), cube(10, (30, 0, 0)), alt=ALT)
     assert scene.towards @ [1, 0, 0] > 0.9
 
 
 def test_scalars_run_from_dark_to_yellow(static):
-    mesh = box((40, 40, 40))
+    mesh = cube(40)
     scene = scene3d.show_meshes(mesh, alt=ALT, scalars=[mesh.vertices[:, 0] + 20], towards=(0, -1, 0))
     body = scene.picture[150:350]
     left, right = body[:, 140].mean(axis=0), body[:, 500].mean(axis=0)
@@ -55,7 +55,7 @@ def test_scalars_run_from_dark_to_yellow(static):
 @pytest.mark.parametrize("wrong", [{"colours": [BLUE]}, {"labels": ["a"]}, {"scalars": [np.zeros(3), None]}])
 def test_lists_that_do_not_fit_are_refused(wrong):
     with pytest.raises(InputRefused):
-        scene3d.show_meshes(box((40, 40, 40)), box((10, 10, 10)), alt=ALT, **wrong)
+        scene3d.show_meshes(cube(40), cube(10), alt=ALT, **wrong)
 
 
 def test_nothing_to_show_is_refused():
@@ -66,7 +66,7 @@ def test_nothing_to_show_is_refused():
 def test_without_pyvista_there_is_a_picture_and_a_sentence(monkeypatch):
     monkeypatch.setenv("CRANIO_NB_MODE", "widget")
     monkeypatch.setattr(scene3d, "find_spec", lambda name: None)
-    data, _ = scene3d.show_meshes(box((40, 40, 40)), alt=ALT)._repr_mimebundle_()
+    data, _ = scene3d.show_meshes(cube(40), alt=ALT)._repr_mimebundle_()
     assert set(data) == {"image/png", "text/plain"} and "cranio-nb[view]" in data["text/plain"]
 
 

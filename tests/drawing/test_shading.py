@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import sphere
+from shapes import ball
 
 from cranio_nb.drawing import shading
 from cranio_nb.drawing.shading import Solid
@@ -12,7 +12,7 @@ RED, GREEN = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
 
 @pytest.mark.parametrize("towards", [(0, 0, 1), (1, 0, 0), (0.3, -0.8, 0.4), (0, 0, -1)])
 def test_a_ball_looks_round_from_everywhere(towards):
-    picture = shading.render([Solid(sphere(20), RED)], towards, px_mm=0.25)
+    picture = shading.render([Solid(ball(), RED)], towards, px_mm=0.25)
     seen = np.isfinite(picture.depth)
     assert seen.sum() * picture.px_mm**2 == pytest.approx(np.pi * 20**2, rel=0.02)
     assert picture.depth.max() == pytest.approx(20, abs=0.1)
@@ -24,7 +24,7 @@ def test_a_ball_looks_round_from_everywhere(towards):
 
 
 def test_no_pixel_is_missed_inside():
-    picture = shading.render([Solid(sphere(20), RED)], (0.2, 0.5, 0.6), px_mm=0.11)
+    picture = shading.render([Solid(ball(), RED)], (0.2, 0.5, 0.6), px_mm=0.11)
     rows, cols = np.indices(picture.depth.shape)
     middle = (np.array(picture.depth.shape) - 1) / 2
     inside = np.hypot(rows - middle[0], cols - middle[1]) * picture.px_mm < 19
@@ -32,7 +32,7 @@ def test_no_pixel_is_missed_inside():
 
 
 def test_the_nearer_solid_hides_the_farther():
-    near, far = Solid(sphere(10, (0, -40, 0)), RED), Solid(sphere(20, (0, 40, 0)), GREEN)
+    near, far = Solid(ball((0, -40, 0), 10), RED), Solid(ball((0, 40, 0), 20), GREEN)
     for towards, middle in (((0, -1, 0), RED), ((0, 1, 0), GREEN)):
         picture = shading.render([near, far], towards, shaded=False)
         height, width = picture.depth.shape
@@ -40,7 +40,7 @@ def test_the_nearer_solid_hides_the_farther():
 
 
 def test_unshaded_colours_are_exact_and_shaded_ones_darker():
-    plain, lit = (shading.render([Solid(sphere(20), RED)], (0, -1, 0), shaded=s) for s in (False, True))
+    plain, lit = (shading.render([Solid(ball(), RED)], (0, -1, 0), shaded=s) for s in (False, True))
     seen = np.isfinite(plain.depth)
     np.testing.assert_allclose(plain.rgb[seen], np.broadcast_to(RED, (seen.sum(), 3)), atol=1e-6)
     assert (plain.rgb[~seen] == 1).all()
@@ -48,7 +48,7 @@ def test_unshaded_colours_are_exact_and_shaded_ones_darker():
 
 
 def test_light_comes_from_the_upper_left():
-    rgb = shading.render([Solid(sphere(20), RED)], (0, -1, 0)).rgb
+    rgb = shading.render([Solid(ball(), RED)], (0, -1, 0)).rgb
     height, width = rgb.shape[:2]
     upper_left, lower_right = rgb[height // 4, width // 4, 0], rgb[-height // 4, -width // 4, 0]
     assert upper_left > lower_right + 0.2

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import box, join, oblique, shell, sphere
+from measured_shapes import box, join, oblique, shell, sphere
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.evaluation.mesh_distances import (

@@ -4,7 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
-from shapes import block, oblique
+from measured_shapes import block, oblique
 
 from cranio_nb.evaluation.rim_gap import distance_to_voxels, rim_gap
 from cranio_nb.mesh import Mesh

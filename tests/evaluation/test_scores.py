@@ -5,8 +5,8 @@ import json
 
 import numpy as np
 import pytest
+from measured_shapes import EMPTY, block, oblique
 from scipy import ndimage
-from shapes import EMPTY, block, oblique
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.evaluation.scores import (

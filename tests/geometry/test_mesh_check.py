@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import box, join, shell, sphere, weld
+from measured_shapes import box, join, shell, sphere, weld
 
 from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.mesh import Mesh

@@ -1,53 +1,23 @@
-"""Masks and meshes that many tests measure: blocks on leaning grids, balls, boxes, shells."""
+"""Simple closed meshes whose measures are known."""
 
 import numpy as np
-import pytest
+from skimage.measure import marching_cubes
 
 from cranio_nb.mesh import Mesh
-from cranio_nb.prosthesis import INNER, OUTER, Prosthesis
-
-EMPTY = np.zeros((6, 7, 8), bool)
 
 
-def oblique(spacing=(2.5, 0.45, 0.6), flip=(1, 1, 1)):
-    rotation = np.linalg.qr(np.array([[0.2, 0.1, 1], [0.3, 1, 0], [1, -0.2, 0.1]]))[0]
-    affine = np.eye(4)
-    affine[:3, :3] = rotation * flip * spacing
-    affine[:3, 3] = (40.0, -95.0, 812.0)
-    return affine
+def ball(centre=(0.0, 0.0, 0.0), radius: float = 20.0) -> Mesh:
+    """A ball about `centre`, mm, its normals outward."""
+    axis = np.arange(-radius - 3, radius + 4)
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    vertices, faces, _, _ = marching_cubes(np.sqrt(x**2 + y**2 + z**2), radius, gradient_direction="ascent")
+    mesh = Mesh(vertices + axis[0] + np.array(centre), faces.astype(np.intp))
+    return mesh if mesh.volume > 0 else Mesh(mesh.vertices, mesh.faces[:, ::-1])
 
 
-def block(start, size=(6, 20, 20), shape=(16, 40, 40)):
-    voxels = np.zeros(shape, bool)
-    voxels[tuple(slice(a, a + n) for a, n in zip(start, size, strict=True))] = True
-    return voxels
-
-
-def sphere(radius=1.0, centre=(0, 0, 0), subdivisions=4):
-    trimesh = pytest.importorskip("trimesh")
-    ball = trimesh.creation.icosphere(subdivisions=subdivisions, radius=radius)
-    return Mesh(np.asarray(ball.vertices) + centre, np.asarray(ball.faces, np.intp))
-
-
-def join(*meshes):
-    offsets = np.cumsum([0] + [len(m.vertices) for m in meshes[:-1]])
-    faces = [m.faces + n for m, n in zip(meshes, offsets, strict=True)]
-    return Mesh(np.concatenate([m.vertices for m in meshes]), np.concatenate(faces))
-
-
-def weld(mesh):
-    vertices, which = np.unique(mesh.vertices.round(9), axis=0, return_inverse=True)
-    return Mesh(vertices, which.ravel()[mesh.faces])
-
-
-def box(size=(1, 1, 1), centre=(0, 0, 0)):
-    trimesh = pytest.importorskip("trimesh")
-    made = trimesh.creation.box(extents=size)
-    return Mesh(np.asarray(made.vertices) + centre, np.asarray(made.faces, np.intp))
-
-
-def shell(outer, inner):
-    out, within = sphere(outer), sphere(inner)
-    mesh = join(out, Mesh(within.vertices, within.faces[:, ::-1]))
-    sides = np.repeat(np.array([OUTER, INNER], np.uint8), [len(out.faces), len(within.faces)])
-    return Prosthesis(mesh, sides, None, "none")
+def cube(size: float, at=(0.0, 0.0, 0.0)) -> Mesh:
+    """A cube about `at`, mm, of twelve faces."""
+    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    faces = np.array([f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))])
+    return Mesh((corners - 0.5) * size + at, faces)

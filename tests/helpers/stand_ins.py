@@ -10,14 +10,12 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import InputRefused, NoOpening
-from cranio_nb.geometry.face_sides import label_faces
 from cranio_nb.methods import catalogue
+from cranio_nb.methods.piece import Piece
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.pipeline import compare, trial
-from cranio_nb.pipeline.run import prepare
+from cranio_nb.pipeline import compare
+from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.trial import attempt, contenders
-from cranio_nb.prosthesis import Prosthesis
-from cranio_nb.stages.surface_reconstruction import extract_surface
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -25,25 +23,21 @@ from data_synth import phantom_case
 def from_truth(grow):
     """A method that knows the answer, and moves it `grow` planes up the head."""
 
-    def design(bone, openings=None, *, progress=None):
-        case = phantom_case("tiny", "round", 0)
-        patch = np.roll(case.implant, grow, axis=0) & ~bone.voxels
-        mesh = extract_surface(bone.with_voxels(patch))
-        sides = label_faces(mesh, bone, openings[0].head_centre)
-        return Prosthesis(mesh, sides, bone.with_voxels(patch), "stand-in", {}, {"version": "0", "seconds": 1.0})
+    def pieces(bone, openings):
+        yield Piece(np.roll(phantom_case("tiny", "round", 0).implant, grow, axis=0))
 
-    return design
+    return pieces
 
 
-def refusing(bone, openings=None, *, progress=None):
+def refusing(bone, openings):
     raise InputRefused("CrossesMiddle", "The other side <is> open, too.", "Try another.")
 
 
-def finding_nothing(bone, openings=None, *, progress=None):
+def finding_nothing(bone, openings):
     raise NoOpening("NothingBridged", "Nothing was bridged.")
 
 
-def faulty(bone, openings=None, *, progress=None):
+def faulty(bone, openings):
     raise IndexError("a secret")
 
 
@@ -60,9 +54,8 @@ STAND_INS = {
 def only_stand_ins():
     """Stand-ins in the catalogue, as if they were all the methods there are."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(catalogue, "import_module", lambda name: types.SimpleNamespace(design=STAND_INS[name]))
-        patch.setattr(catalogue, "METHODS", names := {name: name for name in STAND_INS})
-        patch.setattr(trial, "METHODS", names)
+        patch.setattr(catalogue, "import_module", lambda name: types.SimpleNamespace(pieces=STAND_INS[name]))
+        patch.setattr(catalogue, "METHODS", {name: name for name in STAND_INS})
         yield
 
 

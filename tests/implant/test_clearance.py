@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import block, oblique
+from measured_shapes import block, oblique
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.implant.clearance import with_clearance

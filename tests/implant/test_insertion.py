@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import block
+from measured_shapes import block
 
 from cranio_nb.implant.insertion import find_part_to_trim, undercut_share
 from cranio_nb.mesh import Mesh

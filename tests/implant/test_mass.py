@@ -1,7 +1,7 @@
 """The mass of a box."""
 
 import pytest
-from shapes import box
+from measured_shapes import box
 
 from cranio_nb.implant.mass import DENSITIES, weigh_implant
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import NoOpening
-from cranio_nb.methods import hull
+from cranio_nb.methods.design import design
 from cranio_nb.opening import Opening
 from cranio_nb.volume import Volume
 
@@ -38,7 +38,7 @@ def depths(made, towards):
 def test_a_round_hole_gets_a_flat_lid_from_rim_to_rim(axial):
     towards = np.array([0.9, 0.35, 0.0])
     bone, opening = ball(towards)
-    made = hull.design(bone, (opening,), axial=axial)
+    made = design(bone, (opening,), axial=axial, method="hull")
     height = depths(made, towards)
     lid, floor = OUTER * np.cos(np.radians(HALF)), INNER * np.cos(np.radians(HALF))
     assert np.quantile(height, 0.99) < lid + 1.5 * STEP and np.quantile(height, 0.01) > floor - 1.5 * STEP
@@ -49,19 +49,19 @@ def test_a_round_hole_gets_a_flat_lid_from_rim_to_rim(axial):
 def test_the_hull_in_space_closes_the_top_where_slices_hold_no_ring():
     towards = np.array([0.0, 0.1, 1.0])
     bone, opening = ball(towards)
-    assert hull.design(bone, (opening,)).patch.voxels.any()
+    assert design(bone, (opening,), method="hull").patch.voxels.any()
     try:
-        sliced = hull.design(bone, (opening,), axial=True)
+        sliced = design(bone, (opening,), axial=True, method="hull")
     except NoOpening as nothing:
         assert nothing.code == "NothingBridged"
     else:
-        assert sliced.patch.voxels.sum() < 0.5 * hull.design(bone, (opening,)).patch.voxels.sum()
+        assert sliced.patch.voxels.sum() < 0.5 * design(bone, (opening,), method="hull").patch.voxels.sum()
 
 
 def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, openings):
     """Every point of a slice's hull is a point of the hull in space."""
-    (part,) = hull.design(skull("round"), openings("round")).working
-    sliced = hull.design(skull("round"), openings("round"), axial=True).patch
+    (part,) = design(skull("round"), openings("round"), method="hull").working
+    sliced = design(skull("round"), openings("round"), axial=True, method="hull").patch
     away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.grid.centre
     v, u = np.rint(part.vault.grid.locate(away)).astype(int)
     top = part.outer[v, u]
@@ -70,15 +70,15 @@ def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, openings):
 
 
 def test_every_slice_says_how_it_was_filled(skull, openings):
-    record = hull.design(skull("unilateral"), openings("unilateral"), axial=True).record["slices"]
+    record = design(skull("unilateral"), openings("unilateral"), axial=True, method="hull").record["slices"]
     first, end = openings("unilateral")[0].planes
     assert [entry["plane"] for entry in record] == list(range(first - 2, end + 2))
     assert {"open ring"} <= {entry["reason"] for entry in record if entry["status"] == "hull"}
-    assert "slices" not in hull.design(skull("unilateral"), openings("unilateral")).record
+    assert "slices" not in design(skull("unilateral"), openings("unilateral"), method="hull").record
 
 
 def test_a_hull_is_no_deeper_or_higher_than_its_two_surfaces(skull, openings):
-    (part,) = hull.design(skull("round"), openings("round")).working
+    (part,) = design(skull("round"), openings("round"), method="hull").working
     inside = part.vault.hole
     assert np.isfinite(part.outer[inside]).mean() > 0.98 and np.isnan(part.outer[~inside]).all()
     assert (part.outer - part.inner)[np.isfinite(part.outer)].min() > 2.0

@@ -10,6 +10,7 @@ from scipy import ndimage
 from cranio_nb.errors import InputRefused
 from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.methods import reflection
+from cranio_nb.methods.design import design
 from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import phantom_case, scan
@@ -37,13 +38,13 @@ def symmetric():
 
 def test_a_symmetric_head_gets_its_own_bone_back(symmetric):
     bone, implant = symmetric
-    assert dice(reflection.design(bone, **reflection.paper_options(bone)).patch.voxels, implant) > 0.93
+    assert dice(design(bone, method="reflection", preset="paper").patch.voxels, implant) > 0.93
 
 
 def test_there_is_nothing_to_fit_on_a_symmetric_head(symmetric):
     """The difference to the rim is noise: it moves the surfaces by far less than a voxel."""
     bone, _ = symmetric
-    (fitted,), (plain,) = (reflection.design(bone, fit_rim=on).working for on in (True, False))
+    (fitted,), (plain,) = (design(bone, fit_rim=on, method="reflection").working for on in (True, False))
     for a, b in ((fitted.outer, plain.outer), (fitted.inner, plain.inner)):
         assert np.nanmean(np.abs(a - b)) < 0.4
 
@@ -52,7 +53,7 @@ def test_the_fitted_image_meets_the_rim(skull, openings):
     """A head that is not symmetric: along the hole's edge the step to the nearest bone shrinks."""
     steps = []
     for on in (False, True):
-        (made,) = reflection.design(skull("burr_hole"), openings("burr_hole"), fit_rim=on).working
+        (made,) = design(skull("burr_hole"), openings("burr_hole"), fit_rim=on, method="reflection").working
         hole, bone = made.own.hole, made.own.outer
         known = np.isfinite(bone) & ~ndimage.binary_dilation(hole, iterations=2)
         v, u = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
@@ -62,7 +63,7 @@ def test_the_fitted_image_meets_the_rim(skull, openings):
 
 
 def test_the_difference_of_a_linear_step_goes_on_across_the_hole(skull, openings):
-    (made,) = reflection.design(skull("burr_hole"), openings("burr_hole")).working
+    (made,) = design(skull("burr_hole"), openings("burr_hole"), method="reflection").working
     v, u = np.indices(made.own.outer.shape)
     step = 1.0 + 0.01 * v - 0.02 * u
     known = np.where(made.own.hole, np.nan, step)
@@ -73,7 +74,7 @@ def test_the_difference_of_a_linear_step_goes_on_across_the_hole(skull, openings
 @pytest.mark.parametrize("defect", ["vertex", "bilateral"])
 def test_what_has_no_mirror_image_is_refused_with_a_remedy(defect, skull, openings):
     with pytest.raises(InputRefused) as refused:
-        reflection.design(skull(defect), openings(defect))
+        design(skull(defect), openings(defect), method="reflection")
     assert refused.value.code == "MirrorMissing"
     assert "partial" in refused.value.remedy and "%" in refused.value.message
 
@@ -81,7 +82,7 @@ def test_what_has_no_mirror_image_is_refused_with_a_remedy(defect, skull, openin
 @pytest.mark.parametrize("defect", ["vertex", "bilateral"])
 def test_the_possible_part_has_bone_on_the_other_side(defect, skull, openings):
     bone = skull(defect)
-    made = reflection.design(bone, openings(defect), partial=True)
+    made = design(bone, openings(defect), partial=True, method="reflection")
     assert made.patch.voxels.any() and not (made.patch.voxels & bone.voxels).any()
     assert check_mesh(made.mesh).sound
     plane = made.working[0].plane
@@ -95,13 +96,13 @@ def test_the_possible_part_has_bone_on_the_other_side(defect, skull, openings):
 
 def test_a_possible_opening_is_closed_as_if_it_were_alone(phantom, skull, openings):
     """The whole hole is possible, so asking for the possible part changes nothing."""
-    whole = reflection.design(skull("burr_hole"), openings("burr_hole"))
-    part = reflection.design(skull("burr_hole"), openings("burr_hole"), partial=True)
+    whole = design(skull("burr_hole"), openings("burr_hole"), method="reflection")
+    part = design(skull("burr_hole"), openings("burr_hole"), partial=True, method="reflection")
     np.testing.assert_array_equal(whole.patch.voxels, part.patch.voxels)
 
 
 def test_the_plane_is_in_the_record(skull, openings):
-    made = reflection.design(skull("burr_hole"), openings("burr_hole"))
+    made = design(skull("burr_hole"), openings("burr_hole"), method="reflection")
     record = json.loads(json.dumps(made.record, allow_nan=False))["symmetry"]
     assert record == made.working[0].plane.record()
     assert {"angle_deg", "offset_mm", "residual_mm", "converged"} <= set(record)
@@ -110,5 +111,5 @@ def test_the_plane_is_in_the_record(skull, openings):
 def test_two_small_holes_that_are_not_partners_are_both_closed():
     case = phantom_case("tiny", "bilateral", 0, diameter=24.0)
     bone = Volume(case.bone, case.affine)
-    made = reflection.design(bone, find_openings(bone))
+    made = design(bone, find_openings(bone), method="reflection")
     assert len(made.working) == 2 and all(part.lost < 0.03 for part in made.working)

@@ -8,7 +8,7 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.methods import thin_plate
+from cranio_nb.methods.design import design
 from cranio_nb.methods.thin_plate import bend
 from cranio_nb.vault import radius_measurement, symmetry
 from cranio_nb.volume import Volume
@@ -28,7 +28,7 @@ WAVE = 75 + 1.5 * np.cos(V / 16) * np.sin(U / 14 + 0.4)
 
 def only(**lengths):
     """Options with every term off but those given."""
-    return {"second": 0.0, "third": 0.0, "likeness": 0.0} | lengths
+    return {"second_mm": 0.0, "third_mm": 0.0, "mirror_mm": 0.0} | lengths
 
 
 def known(values):
@@ -38,20 +38,20 @@ def known(values):
 @pytest.mark.parametrize("degree", [0, 1, 2])
 @pytest.mark.parametrize("length", [1.0, 4.0, 12.0])
 def test_the_third_order_continues_quadratics_exactly(degree, length):
-    plate = bend(known(POLYNOMIALS[degree]), HOLE, MM, **only(third=length))
+    plate = bend(known(POLYNOMIALS[degree]), HOLE, MM, **only(third_mm=length))
     np.testing.assert_allclose(plate[HOLE | BESIDE], POLYNOMIALS[degree][HOLE | BESIDE], atol=2e-3)
 
 
 @pytest.mark.parametrize("degree", [0, 1])
 def test_the_second_order_continues_planes_exactly(degree):
-    plate = bend(known(POLYNOMIALS[degree]), HOLE, MM, **only(second=3.0))
+    plate = bend(known(POLYNOMIALS[degree]), HOLE, MM, **only(second_mm=3.0))
     np.testing.assert_allclose(plate[HOLE], POLYNOMIALS[degree][HOLE], atol=1e-3)
 
 
 def test_without_stiffness_the_plate_lies_on_the_bone():
-    soft = bend(known(WAVE), HOLE, MM, **only(third=0.1))
+    soft = bend(known(WAVE), HOLE, MM, **only(third_mm=0.1))
     np.testing.assert_allclose(soft[BESIDE], WAVE[BESIDE], atol=1e-4)
-    stiff = bend(known(WAVE), HOLE, MM, **only(third=8.0))
+    stiff = bend(known(WAVE), HOLE, MM, **only(third_mm=8.0))
     assert np.abs(stiff - WAVE)[BESIDE].mean() > 10 * np.abs(soft - WAVE)[BESIDE].mean()
 
 
@@ -90,7 +90,7 @@ def test_the_other_sides_curvature_is_taken_over_but_not_where_it_lies():
     like = WAVE + 3.0 + 0.05 * V - 0.02 * U
     alone, copied = (bend(known(WAVE), HOLE, MM, like=other) - WAVE for other in (None, like))
     assert np.abs(copied[HOLE]).max() < 0.5 * np.abs(alone[HOLE]).max()
-    stiff = bend(known(WAVE), HOLE, MM, like=like, **only(likeness=2.0))
+    stiff = bend(known(WAVE), HOLE, MM, like=like, **only(mirror_mm=2.0))
     np.testing.assert_allclose(stiff[HOLE], WAVE[HOLE], atol=0.1)
 
 
@@ -126,7 +126,7 @@ def test_bone_on_one_side_only_still_gives_a_plate():
 
 @pytest.fixture(scope="module")
 def made(skull):
-    return thin_plate.design(skull("unilateral"))
+    return design(skull("unilateral"), method="thin-plate")
 
 
 def test_the_prosthesis_is_nowhere_thinner_than_sound_bone(made):
@@ -145,11 +145,11 @@ def test_without_a_plane_of_symmetry_the_plate_is_bent_all_the_same(skull, made,
     def refuse(bone, centre):
         raise InputRefused("NoSymmetry", "Too little of the vault has a counterpart.")
 
-    monkeypatch.setattr(symmetry, "find", refuse)
-    alone = thin_plate.design(skull("unilateral"))
+    monkeypatch.setattr(symmetry, "find_symmetry_plane", refuse)
+    alone = design(skull("unilateral"), method="thin-plate")
     assert alone.record["symmetry"] == {"unused": "Too little of the vault has a counterpart."}
     assert alone.working[0].mirrored is None
-    asked = thin_plate.design(skull("unilateral"), mirror=0.0)
+    asked = design(skull("unilateral"), mirror_mm=0.0, method="thin-plate")
     np.testing.assert_array_equal(asked.patch.voxels, alone.patch.voxels)
     assert made.working[0].mirrored is not None
 
@@ -163,8 +163,8 @@ def test_the_working_holds_a_plate_for_each_opening(made, skull):
 def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
     found = symmetry.find_symmetry_plane(skull("unilateral"), made.working[0].chart.grid.centre)
     for residual, used in ((1.2, True), (1.4, False)):
-        monkeypatch.setattr(symmetry, "find", lambda *_, r=residual: replace(found, residual=r))
-        plate = thin_plate.design(skull("unilateral"))
+        monkeypatch.setattr(symmetry, "find_symmetry_plane", lambda *_, r=residual: replace(found, residual=r))
+        plate = design(skull("unilateral"), method="thin-plate")
         assert (plate.working[0].mirrored is not None) is used
         assert ("unused" in plate.record["symmetry"]) is not used
 
@@ -177,5 +177,5 @@ def test_a_blurred_rim_does_not_pull_the_plate_down(skull, made):
     low = replace(plate.chart, outer=np.where(grazed, plate.chart.outer - 5.0, plate.chart.outer))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(radius_measurement, "measure_around", lambda bone, one: low)
-        again = thin_plate.design(skull("unilateral"))
+        again = design(skull("unilateral"), method="thin-plate")
     np.testing.assert_allclose(again.working[0].outer, plate.outer, atol=1e-6)

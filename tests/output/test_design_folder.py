@@ -9,7 +9,7 @@ import trimesh
 from cli_runs import digest
 
 from cranio_nb.errors import CannotWrite
-from cranio_nb.methods.hull import design
+from cranio_nb.methods.design import design
 from cranio_nb.output import design_folder, files
 from cranio_nb.output.design_folder import made_record, save
 from cranio_nb.pipeline.run import run_design
@@ -23,7 +23,7 @@ FLIP = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 @pytest.fixture(scope="module")
 def made(skull, openings) -> Prosthesis:
-    return design(skull(), openings())
+    return design(skull(), openings(), method="hull")
 
 
 @pytest.fixture(scope="module")
@@ -56,7 +56,7 @@ def test_with_the_report_the_voxels_are_on_the_scans_own_grid(phantom, tmp_path)
     affine[:3, 3] = case.affine[:3, 3] + case.affine[:3, 0] * (case.bone.shape[0] - 1)
     nibabel.save(nibabel.Nifti1Image(stored.astype(np.uint8), FLIP @ affine), tmp_path / "skull.nii.gz")
     bone, report = read_ct(tmp_path / "skull.nii.gz")
-    made = design(bone)
+    made = design(bone, method="hull")
     save(made, tmp_path / "out", report)
     image = nibabel.load(tmp_path / "out" / "patch.nii.gz")
     assert image.shape == stored.shape

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import CannotWrite
+from cranio_nb.grid import AxisOrder
 from cranio_nb.output import files
 from cranio_nb.output.files import jsonable, write_json
-from cranio_nb.volume import AxisOrder
 
 
 def test_json_is_strict_and_holds_dataclasses_and_arrays(tmp_path):

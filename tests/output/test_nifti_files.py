@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import CannotWrite
+from cranio_nb.grid import canonical_order
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.volume import Volume, canonical_order
+from cranio_nb.volume import Volume
 
 
 def oblique():

@@ -2,14 +2,10 @@
 
 import numpy as np
 import pytest
-from stand_ins import STAND_INS, only_stand_ins
+from stand_ins import only_stand_ins
 
-from cranio_nb.errors import InputRefused
-from cranio_nb.methods import catalogue
-from cranio_nb.pipeline import compare, trial
-from cranio_nb.pipeline.trial import Contender, attempt, attempt_apart, contenders
-from cranio_nb.prosthesis import Prosthesis
-from cranio_nb.stages.surface_reconstruction import extract_surface
+from cranio_nb.pipeline import compare
+from cranio_nb.pipeline.trial import attempt, contenders
 
 
 @pytest.fixture
@@ -67,53 +63,6 @@ class TestComparison:
             progress=lambda *told_now: told.append(told_now),
         )
         assert told == [("refusing", 0.0), ("faulty", 0.5)]
-
-
-class TestContenders:
-    def test_by_name_once_each(self):
-        assert contenders(["slicewise:paper", "slicewise", "slicewise"]) == (
-            Contender("slicewise", "paper"),
-            Contender("slicewise"),
-        )
-        assert [c.name for c in contenders(["slicewise:paper"])] == ["slicewise:paper"]
-
-    def test_all_by_default_with_the_papers_preset_where_there_is_one(self):
-        names = [c.name for c in contenders()]
-        assert set(catalogue.METHODS) <= set(names) and "slicewise:paper" in names
-
-    @pytest.mark.parametrize("name", ["magic", "slicewise:best", ":paper"])
-    def test_unknown_names_are_refused(self, name):
-        with pytest.raises(InputRefused, match="There is no"):
-            contenders([name])
-
-
-def test_a_patch_that_runs_out_of_the_image_is_a_failure_and_no_refusal(compared_case, monkeypatch):
-    def leaking(bone, openings=None, *, progress=None):
-        patch = np.zeros(bone.shape, bool)
-        patch[-1] = True
-        return Prosthesis(
-            extract_surface(bone.with_voxels(patch)), np.zeros(0, np.uint8), bone.with_voxels(patch), "leaking"
-        )
-
-    monkeypatch.setitem(STAND_INS, "perfect", leaking)
-    with only_stand_ins():
-        assert attempt(compared_case.bone, compared_case.openings, Contender("perfect")).status == "no patch"
-
-
-class TestApart:
-    def test_is_the_same_design_and_does_not_count_what_this_process_holds(self, compared_case):
-        here = attempt(compared_case.bone, compared_case.openings, Contender("slicewise", "paper"))
-        ballast = np.ones(50_000_000)  # 400 MB
-        apart = attempt_apart(compared_case.bone, compared_case.openings, Contender("slicewise", "paper"))
-        np.testing.assert_array_equal(apart.prosthesis.patch.voxels, here.prosthesis.patch.voxels)
-        np.testing.assert_array_equal(apart.prosthesis.mesh.vertices, here.prosthesis.mesh.vertices)
-        assert apart.prosthesis.parameters == here.prosthesis.parameters
-        assert 20 < apart.memory < trial.peak_memory() - 100 and ballast.nbytes == 4e8
-
-    def test_a_refusal_comes_back_as_a_sentence(self, compared_case):
-        whole = compared_case.bone.with_voxels(np.zeros(compared_case.bone.shape, bool))
-        apart = attempt_apart(whole, compared_case.openings, Contender("slicewise"))
-        assert apart.status != "done" and apart.prosthesis is None and apart.message.endswith(".")
 
 
 def test_heads_for_little_room_tell_columns_apart():

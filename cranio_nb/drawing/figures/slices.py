@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ...methods.slicewise import SlicedDesign, SliceResult
+from ...methods.slicewise.slices import SlicedDesign, SliceResult
 from ...stages import feature_extraction
 from ...vault import slicing
 from ...volume import Volume

@@ -1,6 +1,6 @@
-"""A rival in the paper's outlook: two elastic sheets, pulled to the bone around the hole and left to themselves in it.
+"""A method of the paper's outlook: two elastic sheets, pulled to the bone around the hole and left to themselves in it.
 
-Bone mask in, `Prosthesis` out. Source: Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric
+Bone mask in, pieces out. Source: Qin and Terzopoulos 1996, "D-NURBS: a physics-based framework for geometric
 design", IEEE TVCG 2(1). Faithful are the rational surface, its control points and weights as generalised coordinates,
 the thin plate under tension, the springs to data, and Lagrange's equations (`sheet`, `sheet_motion`).
 
@@ -22,8 +22,7 @@ rest is found at once by a sparse solve. With `free_weights` the sheet moves fro
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -31,14 +30,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ...errors import NoOpening
 from ...geometry import voxel_pieces
 from ...opening import Opening
-from ...prosthesis import Prosthesis
-from ...vault import opening_search, radius_measurement, radius_voxels
+from ...vault import radius_measurement, radius_voxels
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
-from ..assembly import assemble
+from ..piece import Piece
 from . import sheet, sheet_motion
 from .sheet import Material, Sheet, Springs
 from .sheet_motion import Dynamics, Motion, Setting
@@ -74,82 +71,66 @@ class Sheets:
     converged: tuple[bool, bool]
 
 
-def design(
+def pieces(
     bone: Volume,
-    openings: Sequence[Opening] | None = None,
+    openings: Sequence[Opening],
     *,
-    wavelength: float = 20.0,
-    tension: float = 0.0,
-    span: float = 8.0,
+    wavelength_mm: float = 20.0,
+    tension_mm2: float = 0.0,
+    span_mm: float = 8.0,
     free_weights: bool = False,
-    tol: float = 1e-2,
+    tol_mm: float = 1e-2,
     max_iter: int = 40,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis between two elastic sheets.
+) -> Iterator[Piece]:
+    """Close each opening between two elastic sheets.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
-    wavelength : float
+    openings : sequence of Opening
+        Openings to close.
+    wavelength_mm : float
         Ripples of the bone of this length in mm are halved; the rigidity follows from it.
-    tension : float
+    tension_mm2 : float
         mm2, of springs of unit strength per mm2: 0 for a plate, more for a membrane, which fills flatter.
-    span : float
+    span_mm : float
         mm between the knots of the sheets.
     free_weights : bool
         Whether the weights move too.
-    tol, max_iter
+    tol_mm, max_iter
         As for `sheet_motion.relax`, in mm; only with free weights.
-    smooth : bool
-        Surface without stairs (see `surface_reconstruction.extract_surface`).
-    progress : callable, optional
-        Called with (stage, fraction done).
 
-    Returns
-    -------
-    Prosthesis
-        `record["sheets"]` tells of every sheet; `working` holds `Sheets` per opening.
-
-    Raises
+    Yields
     ------
-    NoOpening
-        When the vault is closed, or nothing lies between the sheets.
+    Piece
+        The record's `sheets` describe the outer and the inner sheet; `working` holds `Sheets`.
     """
-    options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
-    openings = opening_search.find_openings(bone) if openings is None else openings
     dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
-    plate = {"wavelength": wavelength, "tension": tension, "span": span}
-    working, patch = [], np.zeros(bone.shape, bool)
-    for i, one in enumerate(openings):
-        tell("sheets", 0.9 * i / len(openings))
-        made = fit(radius_measurement.measure_around(bone, one), **plate, dynamics=dynamics, tol=tol, max_iter=max_iter)
+    plate = {"wavelength_mm": wavelength_mm, "tension_mm2": tension_mm2, "span_mm": span_mm}
+    for opening in openings:
+        made = fit(
+            radius_measurement.measure_around(bone, opening),
+            **plate,
+            dynamics=dynamics,
+            tol_mm=tol_mm,
+            max_iter=max_iter,
+        )
         radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
         outer, inner = radius_voxels.thickened(made.vault, outer=radii[0], inner=radii[1])
-        piece = radius_voxels.voxels_between(made.vault, bone, outer=outer, inner=inner)
-        patch |= voxel_pieces.keep_main_piece(piece, one.sheet.voxels)
-        working.append(made)
-    if not patch.any():
-        raise NoOpening("NothingBridged", "Nothing lies between the sheets.", "Look at the opening that was found.")
-    tell("surface", 0.9)
-    sheets = [entry for made in working for entry in _entries(made)]
-    return assemble(patch, bone, openings, "dnurbs", options, began=began, working=working, record={"sheets": sheets})
+        between = radius_voxels.voxels_between(made.vault, bone, outer=outer, inner=inner)
+        voxels = voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
+        yield Piece(voxels, (made,), {"sheets": _entries(made)})
 
 
 def fit(
     vault: RadiusMap,
     *,
-    wavelength: float,
-    tension: float,
-    span: float,
+    wavelength_mm: float,
+    tension_mm2: float,
+    span_mm: float,
     dynamics: Dynamics | None = None,
-    tol: float = 1e-2,
+    tol_mm: float = 1e-2,
     max_iter: int = 40,
 ) -> Sheets:
     """Both sheets of one hole at rest.
@@ -157,14 +138,18 @@ def fit(
     Parameters
     ----------
     vault : RadiusMap
-    wavelength, tension, span, tol, max_iter
-        As for `design`.
+    wavelength_mm, tension_mm2, span_mm, tol_mm, max_iter
+        As for `pieces`.
     dynamics : Dynamics, optional
         How the sheets move on from where frozen weights leave them; they stay there when not given.
+
+    Returns
+    -------
+    Sheets
     """
-    spans = (max(round((len(vault.outer) - 1) * vault.step_mm / span), 4),) * 2
+    spans = (max(round((len(vault.outer) - 1) * vault.step_mm / span_mm), 4),) * 2
     size = (len(vault.outer) - 1) * vault.step_mm / spans[0]
-    material = Material.plate(tension, (wavelength / (2 * np.pi)) ** 4, (size, size))
+    material = Material.plate(tension_mm2, (wavelength_mm / (2 * np.pi)) ** 4, (size, size))
     rests, settings = [], []
     for radius in (vault.outer, vault.inner):
         springs = springs_to(vault, radius, spans)
@@ -174,7 +159,7 @@ def fit(
         rests.append(Motion(rest, np.zeros(0), 0.0, converged=True))
     if dynamics is not None:
         rests = [
-            sheet_motion.relax(sheet_motion.start(m.sheet, s, dynamics), s, dynamics, tol=tol, max_iter=max_iter)
+            sheet_motion.relax(sheet_motion.start(m.sheet, s, dynamics), s, dynamics, tol=tol_mm, max_iter=max_iter)
             for m, s in zip(rests, settings, strict=True)
         ]
     outer, inner = rests
@@ -192,6 +177,11 @@ def springs_to(vault: RadiusMap, radius: NDArray[np.float64], spans: tuple[int, 
         The vault's outer or inner radii.
     spans : tuple of int
         Of the sheet.
+
+    Returns
+    -------
+    Springs
+        To points in mm along the map's axes from the head's centre.
     """
     known = np.isfinite(radius) & ~vault.hole
     points = (vault.grid.directions[known] * radius[known][:, None]) @ vault.grid.axes.T
@@ -207,6 +197,11 @@ def radii_of(one: Sheet, vault: RadiusMap) -> NDArray[np.float64]:
     one : Sheet
         In mm along the chart's axes from its eye.
     vault : RadiusMap
+
+    Returns
+    -------
+    ndarray, shape (M, M)
+        mm.
     """
     near = ndimage.binary_dilation(vault.hole, iterations=3)
     wanted = np.argwhere(near).astype(float)

@@ -51,11 +51,27 @@ class Sheet:
 
     @property
     def spans(self) -> tuple[int, int]:
-        """Number of polynomial pieces along v and u, the ends of the parameters."""
+        """Number of polynomial pieces along v and u, the ends of the parameters.
+
+        Returns
+        -------
+        tuple of int
+        """
         return self.weights.shape[0] - _DEGREE, self.weights.shape[1] - _DEGREE
 
     def at(self, v: NDArray[np.float64], u: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Points of the surface, shape (k, 3), at parameters (k,) each."""
+        """Points of the surface.
+
+        Parameters
+        ----------
+        v, u : ndarray, shape (k,)
+            Parameters, 0 to the number of spans.
+
+        Returns
+        -------
+        ndarray, shape (k, 3)
+            In the frame of the control points, mm.
+        """
         values = tensor(v, u, self.spans, VALUE)
         weights = self.weights.ravel()
         return (values @ (self.control.reshape(-1, 3) * weights[:, None])) / (values @ weights)[:, None]
@@ -85,6 +101,10 @@ class Material:
             Factor of |second derivatives|^2 per mm2, mm4.
         span : tuple of float
             mm.
+
+        Returns
+        -------
+        Material
         """
         v, u = span
         bends = (rigidity / v**4, 2 * rigidity / (v * u) ** 2, rigidity / u**4)
@@ -112,7 +132,7 @@ class Springs:
 
 
 def basis(x: NDArray[np.float64], spans: int, derivative: int = 0) -> sparse.csr_array:
-    """Cubic B-splines on clamped uniform knots, or a derivative of them, shape (k, spans + 3).
+    """Cubic B-splines on clamped uniform knots, or a derivative of them.
 
     Parameters
     ----------
@@ -122,6 +142,10 @@ def basis(x: NDArray[np.float64], spans: int, derivative: int = 0) -> sparse.csr
         Number of polynomial pieces.
     derivative : int
         0, 1 or 2.
+
+    Returns
+    -------
+    sparse array, shape (k, spans + 3)
     """
     knots = np.concatenate([np.zeros(_DEGREE), np.arange(spans + 1.0), np.full(_DEGREE, spans)])
     splines = None
@@ -138,7 +162,7 @@ def basis(x: NDArray[np.float64], spans: int, derivative: int = 0) -> sparse.csr
 def tensor(
     v: NDArray[np.float64], u: NDArray[np.float64], spans: tuple[int, int], derivative: tuple[int, int]
 ) -> sparse.csr_array:
-    """Products of the B-splines along v and u at scattered parameters, shape (k, n m).
+    """Products of the B-splines along v and u at scattered parameters.
 
     Parameters
     ----------
@@ -148,6 +172,10 @@ def tensor(
         Along v and u.
     derivative : tuple of int
         How often to differentiate along each.
+
+    Returns
+    -------
+    sparse array, shape (k, n m)
     """
     along_v, along_u = (basis(x, n, d) for x, n, d in zip((v, u), spans, derivative, strict=True))
     rows = np.repeat(np.arange(len(v)), np.diff(along_v.indptr))
@@ -160,15 +188,35 @@ def tensor(
 
 
 def gauss(spans: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Gauss points of all spans and their weights, shape (4 spans,) each."""
+    """Gauss points of all spans and their weights.
+
+    Parameters
+    ----------
+    spans : int
+        Number of polynomial pieces.
+
+    Returns
+    -------
+    x, weight : ndarray, shape (4 spans,)
+    """
     x, w = np.polynomial.legendre.leggauss(_GAUSS)
     return (np.arange(spans)[:, None] + (x + 1) / 2).ravel(), np.tile(w / 2, spans)
 
 
 def stiffness(spans: tuple[int, int], material: Material) -> sparse.csr_array:
-    """K of a sheet whose weights are all alike, shape (n m, n m): E = 1/2 sum over coordinates of p K p.
+    """K of a sheet whose weights are all alike: E = 1/2 sum over coordinates of p K p.
 
     The integrals over (v, u) fall apart into products of integrals along v and along u.
+
+    Parameters
+    ----------
+    spans : tuple of int
+        Along v and u.
+    material : Material
+
+    Returns
+    -------
+    sparse array, shape (n m, n m)
     """
     grams = [_grams(n) for n in spans]
     total = sparse.csr_array((grams[0][0].shape[0] * grams[1][0].shape[0],) * 2)
@@ -218,7 +266,18 @@ def settle(springs: Springs, natural: Sheet, material: Material, *, rounds: int 
 
 
 def flat(spans: tuple[int, int]) -> Sheet:
-    """A sheet shrunk to one point: the natural shape of one that wants to be plane."""
+    """A sheet shrunk to one point: the natural shape of one that wants to be plane.
+
+    Parameters
+    ----------
+    spans : tuple of int
+        Along v and u.
+
+    Returns
+    -------
+    Sheet
+        All control points in one, weights 1.
+    """
     shape = (spans[0] + _DEGREE, spans[1] + _DEGREE)
     return Sheet(np.zeros((*shape, 3)), np.ones(shape))
 

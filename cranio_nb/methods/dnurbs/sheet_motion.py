@@ -102,7 +102,19 @@ class Motion:
 
 
 def start(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> Motion:
-    """A sheet held still, about to be let go."""
+    """The motion of a sheet at its beginning, without speed.
+
+    Parameters
+    ----------
+    sheet : Sheet
+        Where it begins.
+    setting : Setting
+    dynamics : Dynamics
+
+    Returns
+    -------
+    Motion
+    """
     still = np.zeros(len(_coordinates(sheet, dynamics.free_weights)))
     return Motion(sheet, still, potential(sheet, setting, dynamics))
 
@@ -131,6 +143,11 @@ def relax(
         Steps at most.
     iter_callback : callable, optional
         Called with the motion after each step, for drawing.
+
+    Returns
+    -------
+    Motion
+        `converged` says whether it came to rest.
     """
     for _ in range(max_iter):
         motion = step(motion, setting, dynamics)
@@ -151,6 +168,10 @@ def step(motion: Motion, setting: Setting, dynamics: Dynamics) -> Motion:
     motion : Motion
     setting, dynamics
         What acts on it.
+
+    Returns
+    -------
+    Motion
     """
     sheet, free = motion.sheet, dynamics.free_weights
     matter, elastic, force = _forces(sheet, setting, dynamics)
@@ -179,7 +200,18 @@ def _left(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
 
 
 def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
-    """Elastic energy of a sheet and of the springs."""
+    """Elastic energy of a sheet and of the springs.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    setting : Setting
+    dynamics : Dynamics
+
+    Returns
+    -------
+    float
+    """
     v, u, weight = _quadrature(sheet)
     shape, natural, springs = derivatives(sheet, v, u), derivatives(setting.natural, v, u), setting.springs
     elastic = sum(
@@ -192,7 +224,19 @@ def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
 
 
 def derivatives(sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64]) -> dict[Pair, NDArray[np.float64]]:
-    """The surface and its derivatives up to the second at parameters (k,), shape (k, 3) each."""
+    """The surface and its derivatives up to the second.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    v, u : ndarray, shape (k,)
+        Parameters.
+
+    Returns
+    -------
+    dict
+        (times by v, times by u) -> ndarray, shape (k, 3).
+    """
     points = sheet.control.reshape(-1, 3) * sheet.weights.reshape(-1, 1)
     return {d: part @ points for d, part in _quotients(sheet, v, u, tuple(_SHARES)).items()}
 
@@ -200,9 +244,24 @@ def derivatives(sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64]) ->
 def jacobians(
     sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64], free_weights: bool, *, strains: bool = True
 ) -> dict[Pair, sparse.csr_array]:
-    """J and, if `strains`, its derivatives: of (x, y, z) one below the other by q, shape (3 k, q).
+    """J, the surface by its coordinates q, and its derivatives along v and u.
 
     The coordinates q are all x of the control points, all y, all z, then all weights if those are free.
+
+    Parameters
+    ----------
+    sheet : Sheet
+    v, u : ndarray, shape (k,)
+        Parameters.
+    free_weights : bool
+        Whether the weights are coordinates too.
+    strains : bool
+        Whether to give the derivatives too.
+
+    Returns
+    -------
+    dict
+        (times by v, times by u) -> sparse array, shape (3 k, q): rows of x, y, z one below the other.
     """
     quotients = _quotients(sheet, v, u, tuple(_SHARES) if strains else (VALUE,))
     weights, points = sheet.weights.ravel(), sheet.control.reshape(-1, 3)

@@ -76,6 +76,10 @@ def even(loop: Loop, step: float, smooth: float) -> Loop:
         Wanted distance between neighbouring points.
     smooth : float
         Standard deviation of the smoothing along the loop, a length; takes out the zigzag of a path on a mesh.
+
+    Returns
+    -------
+    Loop
     """
     closed = np.concatenate([loop.points, loop.points[:1]])
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
@@ -106,6 +110,10 @@ def span(
     max_iter : int
         Steps after the harmonic one.
 
+    Returns
+    -------
+    Membrane
+
     Raises
     ------
     InputRefused
@@ -131,7 +139,19 @@ def span(
 
 
 def plane_axes(loop: NDArray[np.float64], normal: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rows: right-handed unit axes of the plane across `normal`, the first towards the loop's first point."""
+    """Rows: right-handed unit axes of the plane across `normal`, the first towards the loop's first point.
+
+    Parameters
+    ----------
+    loop : ndarray, shape (n, 3)
+    normal : ndarray, shape (3,)
+        Unit vector.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Rows: two axes in the plane, and the normal.
+    """
     first = loop[0] - loop.mean(axis=0)
     first = first - (first @ normal) * normal
     first = first / np.linalg.norm(first)
@@ -139,10 +159,20 @@ def plane_axes(loop: NDArray[np.float64], normal: NDArray[np.float64]) -> NDArra
 
 
 def wall(outer: Loop, inner: Loop) -> NDArray[np.intp]:
-    """Triangles between two loops that share their stations, shape (n + m, 3).
+    """Triangles between two loops that share their stations.
 
     Vertices count through the outer loop's points, then the inner one's. Both loops run counter-clockwise seen from
     the outer side; normals point away from what the loops enclose.
+
+    Parameters
+    ----------
+    outer, inner : Loop
+        Of n and m points.
+
+    Returns
+    -------
+    ndarray of int, shape (n + m, 3)
+        Faces.
     """
     n, m = len(outer.points), len(inner.points)
     is_outer = np.arange(n + m) < n
@@ -155,7 +185,17 @@ def wall(outer: Loop, inner: Loop) -> NDArray[np.intp]:
 
 
 def stitched(outer: Membrane, inner: Membrane, outer_rim: Loop, inner_rim: Loop) -> Mesh:
-    """Closed mesh of two membranes and the wall between their rims."""
+    """Closed mesh of two membranes and the wall between their rims.
+
+    Parameters
+    ----------
+    outer, inner : Membrane
+    outer_rim, inner_rim : Loop
+
+    Returns
+    -------
+    Mesh
+    """
     n, rim, m = len(outer_rim.points), len(outer.mesh.vertices), len(inner_rim.points)
     side = wall(outer_rim, inner_rim)
     side = np.where(side < n, side, side - n + rim)

@@ -1,6 +1,6 @@
-"""A rival on triangle meshes: guiding points on the rim of the hole, and flat fills between them.
+"""A method on triangle meshes: guiding points on the rim of the hole, and flat fills between them.
 
-Bone mask in, `Prosthesis` out. In the spirit of You et al. 2009, "A new modeling method on skull defect repair", of
+Bone mask in, pieces out. In the spirit of You et al. 2009, "A new modeling method on skull defect repair", of
 which we had only what others write about it: voxels are split into tetrahedra, marching tetrahedra give the mesh of the
 defective skull, a user places guiding points, and computational geometry on that mesh alone fills the hole. Nothing
 asks the fill to leave the rim in the direction of the bone, hence the bias to planar shapes that it is known for:
@@ -17,9 +17,8 @@ over a spherical cap of height h the fill of least area lies h / 2 too deep in t
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,15 +28,14 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import cKDTree
 from skimage.measure import find_contours
 
-from ...errors import InputRefused, NoOpening
+from ...errors import InputRefused
 from ...geometry import voxel_pieces
 from ...mesh import Mesh
 from ...opening import Opening
-from ...prosthesis import Prosthesis
-from ...vault import opening_search, radius_measurement
+from ...vault import radius_measurement
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
-from ..assembly import assemble
+from ..piece import Piece
 from . import membrane, mesh_to_voxels, tetrahedra
 from .membrane import Loop, Membrane
 
@@ -76,90 +74,69 @@ class Filling:
     solid: Mesh
 
 
-def design(
-    bone: Volume,
-    openings: Sequence[Opening] | None = None,
-    *,
-    n_guides: int = 12,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis from guiding points that are found by themselves.
+def pieces(bone: Volume, openings: Sequence[Opening], *, n_guides: int = 12) -> Iterator[Piece]:
+    """Close each opening between guiding points that are found by themselves.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening, optional
-        Openings to close; found automatically when not given.
+    openings : sequence of Opening
+        Openings to close.
     n_guides : int
         Guiding points around each hole, 3 at least.
-    smooth : bool
-        Surface without stairs (see `surface_reconstruction.extract_surface`).
-    progress : callable, optional
-        Called with (stage, fraction done).
 
-    Returns
-    -------
-    Prosthesis
-        `working` holds a `Filling` per opening.
+    Yields
+    ------
+    Piece
+        As `between_guides`.
 
     Raises
     ------
-    NoOpening
-        When the vault is closed, or nothing of an opening could be filled.
     InputRefused
         ``TooFewGuides``; ``TangledRim`` when the rim of a hole crosses itself.
     """
-    began = time.perf_counter()
-    openings = opening_search.find_openings(bone) if openings is None else openings
-    guides = [find_guides(radius_measurement.measure_around(bone, one), n_guides) for one in openings]
-    made = design_from_guides(bone, openings, guides, smooth=smooth, progress=progress)
-    options = {"n_guides": n_guides, "smooth": smooth}
-    return replace(made, parameters=options, record=made.record | {"seconds": time.perf_counter() - began})
+    guides = [find_guides(radius_measurement.measure_around(bone, opening), n_guides) for opening in openings]
+    yield from between_guides(bone, openings, guides)
 
 
-def design_from_guides(
-    bone: Volume,
-    openings: Sequence[Opening],
-    guides: Sequence[NDArray[np.float64]],
-    *,
-    smooth: bool = True,
-    progress: Callable[[str, float], None] | None = None,
-) -> Prosthesis:
-    """Design a prosthesis from guiding points that somebody placed.
+def between_guides(bone: Volume, openings: Sequence[Opening], guides: Sequence[NDArray[np.float64]]) -> Iterator[Piece]:
+    """Close each opening between guiding points that somebody placed; `design.assemble` makes a prosthesis of it.
 
     Parameters
     ----------
-    bone, openings, smooth, progress
-        As for `design`.
+    bone, openings
+        As for `pieces`.
     guides : sequence of ndarray, shape (n, 3)
         For each opening at least 3 points near the outer edge of its rim, in order around the hole, world mm.
 
-    Returns
-    -------
-    Prosthesis
-        `parameters` holds the guides.
+    Yields
+    ------
+    Piece
+        The record's `fills` describe the outer and the inner fill; `working` holds a `Filling`.
     """
-    tell = progress or (lambda stage, done: None)
-    began = time.perf_counter()
-    working = []
-    patch = np.zeros(bone.shape, bool)
-    for i, (one, points) in enumerate(zip(openings, guides, strict=True)):
-        tell("mesh", 0.9 * i / len(openings))
-        working.append(fill_between(bone, one, np.asarray(points, float)))
-        box = _box(bone, one, working[-1].guides)
-        patch[box] |= _piece(bone.crop(box), one.sheet.voxels[box], working[-1].solid)
-    if not patch.any():
-        raise NoOpening("NothingFilled", "Nothing of the opening could be filled.", "Place guiding points on its rim.")
-    tell("surface", 0.9)
-    options = {"guides": [np.asarray(points).tolist() for points in guides], "smooth": smooth}
-    fills = [_entry(side) for one in working for side in (one.outer, one.inner)]
-    return assemble(patch, bone, openings, "you", options, began=began, working=working, record={"fills": fills})
+    for opening, points in zip(openings, guides, strict=True):
+        filling = fill_between(bone, opening, np.asarray(points, float))
+        box = _box(bone, opening, filling.guides)
+        voxels = np.zeros(bone.shape, bool)
+        voxels[box] = _solid(bone.crop(box), opening.sheet.voxels[box], filling.solid)
+        yield Piece(voxels, (filling,), {"fills": [_entry(side) for side in (filling.outer, filling.inner)]})
 
 
 def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
-    """Points on the outer surface at even steps around a hole, shape (n_guides, 3), world mm."""
+    """Points on the outer surface at even steps around a hole.
+
+    Parameters
+    ----------
+    vault : RadiusMap
+        The bone around the hole.
+    n_guides : int
+
+    Returns
+    -------
+    ndarray, shape (n_guides, 3)
+        World mm.
+    """
     soft = ndimage.gaussian_filter(vault.hole.astype(float), 1.5)
     outline = max(find_contours(np.pad(soft, 1), 0.5), key=len)[:-1] - 1
     closed = np.concatenate([outline, outline[:1]])
@@ -171,17 +148,21 @@ def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     return vault.grid.centre + vault.grid.directions[v, u] * vault.outer[v, u, None]
 
 
-def fill_between(bone: Volume, one: Opening, guides: NDArray[np.float64]) -> Filling:
+def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) -> Filling:
     """Fill one hole between guiding points.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    one : Opening
+    opening : Opening
         The hole.
     guides : ndarray, shape (n, 3)
         Near the outer edge of the rim, in order around the hole, world mm.
+
+    Returns
+    -------
+    Filling
 
     Raises
     ------
@@ -190,11 +171,11 @@ def fill_between(bone: Volume, one: Opening, guides: NDArray[np.float64]) -> Fil
     """
     if len(guides) < 3:
         raise InputRefused("TooFewGuides", f"There are {len(guides)} guiding points; 3 at least are wanted.")
-    skull = _main_part(tetrahedra.extract(bone.crop(_box(bone, one, guides))))
-    away = skull.vertices - one.head_centre
+    skull = _main_part(tetrahedra.extract(bone.crop(_box(bone, opening, guides))))
+    away = skull.vertices - opening.head_centre
     radius = np.linalg.norm(away, axis=1)
     lean = np.einsum("vd,vd->v", _vertex_normals(skull), away / radius[:, None])
-    normal = _normal(guides, one.direction)
+    normal = _normal(guides, opening.direction)
     outer_at = _nearest(skull.vertices, lean > _LEANS, _counter_clockwise(guides, normal))
     sight = away / radius[:, None] * np.median(radius)
     seen = np.column_stack([sight, _DEPTH_COUNTS * radius])
@@ -218,7 +199,7 @@ def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop,
     raise problem
 
 
-def _piece(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
+def _solid(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
     """Voxels inside the solid and off the bone, in one piece, without the slivers where a fill grazes the bone."""
     return voxel_pieces.keep_main_piece(
         ndimage.binary_opening(mesh_to_voxels.inside(closed, bone) & ~bone.voxels), opening
@@ -230,9 +211,9 @@ def _entry(one: Membrane) -> dict[str, Any]:
     return {"area": one.areas[-1], "harmonic_area": one.areas[0], "n_iter": len(one.areas), "converged": one.converged}
 
 
-def _box(bone: Volume, one: Opening, guides: NDArray) -> tuple[slice, slice, slice]:
+def _box(bone: Volume, opening: Opening, guides: NDArray) -> tuple[slice, slice, slice]:
     """Index box around the opening and the guides, with a margin."""
-    index = np.concatenate([np.argwhere(one.sheet.voxels), bone.to_voxel(guides)])
+    index = np.concatenate([np.argwhere(opening.sheet.voxels), bone.to_voxel(guides)])
     margin = _MARGIN / bone.spacing
     low = np.maximum(np.floor(index.min(axis=0) - margin).astype(int), 0)
     high = np.minimum(np.ceil(index.max(axis=0) + margin).astype(int) + 1, bone.shape)

@@ -5,7 +5,7 @@ import pytest
 
 from cranio_nb.curves import GapEnds
 from cranio_nb.drawing import figures, palette
-from cranio_nb.methods.slicewise import SlicedDesign, SliceResult
+from cranio_nb.methods.slicewise.slices import SlicedDesign, SliceResult
 from cranio_nb.opening import Opening
 from cranio_nb.vault import slicing
 from cranio_nb.volume import Volume

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from shapes import sphere
+from shapes import ball
 
 from cranio_nb.drawing import figures
 
@@ -17,7 +17,7 @@ def test_three_views_show_the_opening():
 
 
 def test_distance_map_has_the_colours_of_its_scale():
-    mesh = sphere(20)
+    mesh = ball()
     figure = figures.distance_figure(mesh, mesh, np.full(len(mesh.vertices), 1.0), (0, -1, 0), top_mm=2.0)
     shown = np.asarray(figure.axes[0].images[0].get_array())
     middle = shown[shown.shape[0] // 2, shown.shape[1] // 2]
@@ -26,7 +26,7 @@ def test_distance_map_has_the_colours_of_its_scale():
 
 
 def test_view_names_the_patients_sides():
-    figure = figures.view_figure(sphere(30), sphere(8, (0, -25, 0)), (0, -1, 0))
+    figure = figures.view_figure(ball(radius=30), ball((0, -25, 0), 8), (0, -1, 0))
     places = {t.get_text(): t.get_position() for t in figure.axes[0].texts}
     assert places["L"][0] > places["R"][0] and "S" in places and "50 mm" in places
     bar = figure.axes[0].lines[-1].get_xdata()

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy import sparse
 
+from cranio_nb.methods.design import design
 from cranio_nb.methods.dnurbs import method as dnurbs
 from cranio_nb.methods.dnurbs.method import sheet, sheet_motion
 from cranio_nb.methods.dnurbs.sheet import Material, Sheet, Springs
@@ -229,16 +230,18 @@ def test_a_sheet_on_a_sphere_needs_no_springs_near_the_hole_to_stay_on_it():
     away = np.hypot(*(np.indices((n, n)) - 60))
     hole = away < 35
     vault = RadiusMap(RayGrid(np.zeros(3), np.eye(3), step, n), outer=outer, inner=outer - 6, hole=hole)
-    made = dnurbs.fit(vault, wavelength=20.0, tension=0.0, span=8.0)
+    made = dnurbs.fit(vault, wavelength_mm=20.0, tension_mm2=0.0, span_mm=8.0)
     error = dnurbs.radii_of(made.outer, vault)[hole] - outer[hole]
     assert np.abs(error).max() < 0.02
-    tense = dnurbs.fit(vault, wavelength=20.0, tension=0.0, span=16.0)
+    tense = dnurbs.fit(vault, wavelength_mm=20.0, tension_mm2=0.0, span_mm=16.0)
     assert np.abs(dnurbs.radii_of(tense.outer, vault)[hole] - outer[hole]).max() < 0.1
 
 
 def test_free_weights_design_a_prosthesis_and_say_how(skull, openings):
-    made = dnurbs.design(skull("burr_hole"), openings("burr_hole"), span=20.0, free_weights=True, max_iter=3)
-    frozen = dnurbs.design(skull("burr_hole"), openings("burr_hole"), span=20.0)
+    made = design(
+        skull("burr_hole"), openings("burr_hole"), span_mm=20.0, free_weights=True, max_iter=3, method="dnurbs"
+    )
+    frozen = design(skull("burr_hole"), openings("burr_hole"), span_mm=20.0, method="dnurbs")
     for one, plain in zip(made.record["sheets"], frozen.record["sheets"], strict=True):
         assert 1 <= one["n_iter"] <= 3 and isinstance(one["converged"], bool)
         assert 0 < one["weights"][0] < one["weights"][1] and plain["weights"] == [1.0, 1.0] and plain["n_iter"] == 0

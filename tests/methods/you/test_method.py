@@ -9,6 +9,7 @@ from cranio_nb.errors import InputRefused
 from cranio_nb.evaluation import scores
 from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.mesh import Mesh
+from cranio_nb.methods.design import assemble, design
 from cranio_nb.methods.you import method as you
 from cranio_nb.methods.you.method import membrane
 from cranio_nb.opening import Opening
@@ -141,10 +142,9 @@ def test_guides_in_either_sense_give_the_same_rim(dome, filling):
 def test_picked_guides_make_a_prosthesis(skull, openings, phantom):
     bone, found = skull("round"), openings("round")
     guides = [you.find_guides(radius_measurement.measure_around(bone, one), 9) for one in found]
-    made = you.design_from_guides(bone, found, guides)
-    assert made.parameters["guides"] == [points.tolist() for points in guides]
-    json.dumps([made.parameters, made.record], allow_nan=False)
-    same = you.design(bone, found, n_guides=9)
+    made = assemble(bone, found, you.between_guides(bone, found, guides), method="you", parameters={"smooth": True})
+    json.dumps(made.record, allow_nan=False)
+    same = design(bone, found, n_guides=9, method="you")
     np.testing.assert_array_equal(made.patch.voxels, same.patch.voxels)
     assert scores.dice(made.patch, Volume(phantom("round").implant, bone.affine)) > 0.5
 

@@ -1,0 +1,56 @@
+"""Methods that were added by hand, packed for another process: functions go by value, wherever they were written."""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from .catalogue import Method, add_method, added_methods, method_names
+
+
+def pack_methods() -> bytes:
+    """The methods that `add_method` added in this process.
+
+    Returns
+    -------
+    bytes
+        For `unpack_methods`; empty where there are none.
+    """
+    methods = added_methods()
+    if not methods:
+        return b""
+    import cloudpickle  # loaded only for own methods
+
+    with _by_value(methods):
+        return bytes(cloudpickle.dumps([(m.name, m.pieces, m.presets) for m in methods]))
+
+
+def unpack_methods(packed: bytes) -> None:
+    """Add packed methods to the catalogue of this process; those that are there already stay.
+
+    Parameters
+    ----------
+    packed : bytes
+        From `pack_methods`.
+    """
+    for name, pieces, presets in pickle.loads(packed) if packed else ():
+        if name not in method_names():
+            add_method(name, pieces, presets=presets)
+
+
+@contextmanager
+def _by_value(methods: tuple[Method, ...]) -> Iterator[None]:
+    """While it lasts, what is defined in the modules of the methods is packed whole: the other process lacks them."""
+    import cloudpickle
+
+    names = {m.pieces.__module__ for m in methods} - set(cloudpickle.list_registry_pickle_by_value()) - {"__main__"}
+    modules = [sys.modules[name] for name in names if name in sys.modules]
+    for module in modules:
+        cloudpickle.register_pickle_by_value(module)
+    try:
+        yield
+    finally:
+        for module in modules:
+            cloudpickle.unregister_pickle_by_value(module)

@@ -1,0 +1,241 @@
+"""A scan on disk -> what every method gets: the bone, its openings, and the missing bone where it is known."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+from os import PathLike
+
+from ..errors import InputRefused, NoOpening
+from ..opening import Opening
+from ..readers import LoadReport, read_ct
+from ..stages.segmentation import bone_of, threshold_of
+from ..vault.opening_search import find_openings
+from ..volume import Volume, same_grid
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A scan as every method gets it.
+
+    Parameters
+    ----------
+    load : LoadReport
+    bone : Volume
+        Bool mask of the skull.
+    openings : tuple of Opening
+        The openings to close, the largest first.
+    threshold : float or None
+        HU of the bone threshold; None for a mask.
+    truth : Volume or None
+        Bool mask of the missing bone on the grid of `bone`.
+    seconds : dict of str to float
+        Time of each step.
+    """
+
+    load: LoadReport
+    bone: Volume
+    openings: tuple[Opening, ...]
+    threshold: float | None
+    truth: Volume | None
+    seconds: dict[str, float]
+
+
+def prepare(
+    path: str | PathLike[str],
+    *,
+    mask: bool | None = None,
+    threshold: float | None = None,
+    planes: tuple[int, int] | None = None,
+    truth: str | PathLike[str] | None = None,
+    allow: Collection[str] = (),
+    progress: Progress | None = None,
+) -> Prepared:
+    """Read a scan and find its openings: all that comes before a design.
+
+    Parameters
+    ----------
+    path : path
+        DICOM folder, NIfTI or NRRD file with a CT in HU or a bone mask.
+    mask : bool, optional
+        As for `read_ct`: True takes every nonzero voxel as bone. By default data of 0 and 1 are a mask.
+    threshold : float, optional
+        Lowest HU of bone; `segmentation.BONE_HU` when not given.
+    planes : tuple of int, optional
+        First and last plane (both included): only what lies between them is closed.
+    truth : path, optional
+        Mask of the missing bone on the scan's own grid.
+    allow : collection of str
+        Relaxations for `read_ct`.
+    progress : callable, optional
+        Called with (step, fraction of the whole run).
+
+    Returns
+    -------
+    Prepared
+
+    Raises
+    ------
+    InputRefused
+        What cannot be read safely; ``OpeningLeavesImage``.
+    NoOpening
+        When there is nothing to close.
+
+    Examples
+    --------
+    >>> import cranio_nb as cn
+    >>> from cranio_nb.output.nifti_files import write_nifti
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "burr_hole", 0)
+    >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")
+    >>> prepared = cn.prepare("skull.nii.gz")
+    >>> len(prepared.openings), prepared.threshold, prepared.truth
+    (1, None, None)
+    """
+    report = progress or (lambda step, done: None)
+    clock = Clock()
+    report("reading", 0.0)
+    scan, load = read_ct(path, mask=mask, allow=allow, progress=lambda i, n: report("reading", 0.3 * i / n))
+    known = None if truth is None else read_truth(truth, scan)
+    clock.lap("read")
+    report("bone", 0.3)
+    bone = bone_of(scan, threshold)
+    openings = find_openings(bone) if planes is None else within_planes(find_openings(bone), planes)
+    for opening in openings:
+        check_margin(opening.sheet, "The opening of the skull")
+    clock.lap("bone and openings")
+    return Prepared(load, bone, openings, threshold_of(scan, threshold), known, clock.seconds)
+
+
+def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tuple[Opening, ...]:
+    """The parts of the openings that lie in a range of planes; openings elsewhere are left out.
+
+    Parameters
+    ----------
+    openings : tuple of Opening
+        At least one.
+    planes : tuple of int
+        First and last plane, both included.
+
+    Returns
+    -------
+    tuple of Opening
+
+    Raises
+    ------
+    InputRefused
+        ``BadPlanes`` when the range is empty or outside the volume.
+    NoOpening
+        ``NoOpening`` when no opening meets it.
+    """
+    first, last = planes
+    n_planes = openings[0].sheet.shape[0]
+    if not 0 <= first <= last < n_planes:
+        raise InputRefused("BadPlanes", f"Planes {first} to {last} are not a range within 0 to {n_planes - 1}.")
+    parts = []
+    for opening in openings:
+        voxels = opening.sheet.voxels.copy()
+        voxels[:first] = voxels[last + 1 :] = False
+        if voxels.any():
+            parts.append(replace(opening, sheet=opening.sheet.with_voxels(voxels)))
+    if not parts:
+        spans = ", ".join(f"{a} to {b - 1}" for a, b in (opening.planes for opening in openings))
+        message = f"No opening lies in planes {first} to {last}; openings were found in planes {spans}."
+        raise NoOpening("NoOpening", message)
+    return tuple(parts)
+
+
+def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
+    """Read the mask of the missing bone that belongs to a scan.
+
+    Parameters
+    ----------
+    path : path
+        NIfTI or NRRD file, or DICOM folder.
+    scan : Volume
+        The scan, on whose grid the mask has to be.
+
+    Returns
+    -------
+    Volume
+        Bool mask.
+
+    Raises
+    ------
+    InputRefused
+        ``GridMismatch`` or ``EmptyMask``, or what reading refuses.
+    """
+    truth, _ = read_ct(path, mask=True)
+    if not same_grid(scan, truth):
+        message = f"The truth has shape {truth.shape}, the scan {scan.shape}, or they lie at different places."
+        raise InputRefused("GridMismatch", message, "Give a truth mask on the scan's own grid.")
+    if not truth.voxels.any():
+        raise InputRefused("EmptyMask", "The truth mask is empty; there is nothing to compare with.")
+    return truth
+
+
+def check_margin(mask: Volume, what: str) -> None:
+    """Refuse what touches the border of its grid: it may go on outside.
+
+    Parameters
+    ----------
+    mask : Volume
+        Bool mask.
+    what : str
+        Its name in the sentence.
+
+    Raises
+    ------
+    InputRefused
+        ``OpeningLeavesImage``.
+    """
+    if touches_border(mask):
+        raise InputRefused(
+            "OpeningLeavesImage",
+            f"{what} reaches the edge of the image, where it would be cut off.",
+            "Use a scan that covers the whole opening and a margin around it.",
+        )
+
+
+def touches_border(mask: Volume) -> bool:
+    """Whether a mask reaches the first or the last plane, row or column of its grid.
+
+    Parameters
+    ----------
+    mask : Volume
+        Bool mask.
+
+    Returns
+    -------
+    bool
+    """
+    return any(mask.voxels.take(end, axis).any() for axis in range(3) for end in (0, -1))
+
+
+class Clock:
+    """Seconds of each step.
+
+    Parameters
+    ----------
+    before : dict, optional
+        Steps measured earlier.
+    """
+
+    def __init__(self, before: dict[str, float] | None = None) -> None:
+        self.seconds = dict(before or {})
+        self._last = time.perf_counter()
+
+    def lap(self, name: str) -> None:
+        """End a step.
+
+        Parameters
+        ----------
+        name : str
+            Of the step.
+        """
+        now = time.perf_counter()
+        self.seconds[name] = now - self._last
+        self._last = now

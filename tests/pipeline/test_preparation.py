@@ -1,0 +1,75 @@
+"""What comes before a design: the scan, its bone and openings, the missing bone."""
+
+import numpy as np
+import pytest
+
+import cranio_nb as cn
+from cranio_nb.errors import InputRefused, NoOpening
+from cranio_nb.output.nifti_files import write_nifti
+from cranio_nb.pipeline.preparation import Clock, check_margin, prepare, read_truth, touches_border, within_planes
+
+
+@pytest.fixture
+def scan(skull, tmp_path):
+    path = tmp_path / "skull.nii.gz"
+    write_nifti(skull("burr_hole"), path)
+    return path
+
+
+def test_a_prepared_mask_is_the_skull_and_its_openings(scan, skull, openings):
+    case = prepare(scan)
+    np.testing.assert_array_equal(case.bone.voxels, skull("burr_hole").voxels)
+    assert [o.planes for o in case.openings] == [o.planes for o in openings("burr_hole")]
+    assert case.threshold is None and case.truth is None and all(s >= 0 for s in case.seconds.values())
+
+
+def test_only_the_part_between_two_planes_is_kept(openings):
+    (opening,) = openings("burr_hole")
+    first, end = opening.planes
+    (part,) = within_planes((opening,), (first + 1, end + 5))
+    assert part.planes == (first + 1, end)
+    np.testing.assert_array_equal(part.sheet.voxels[first + 1 :], opening.sheet.voxels[first + 1 :])
+    np.testing.assert_array_equal(part.head_centre, opening.head_centre)
+
+
+def test_planes_without_an_opening_and_planes_that_are_none_are_refused(openings):
+    (opening,) = openings("burr_hole")
+    end = opening.planes[1]
+    with pytest.raises(NoOpening, match="openings were found in planes"):
+        within_planes((opening,), (end, end))
+    for planes in ((-1, 3), (5, 4), (0, opening.sheet.shape[0])):
+        with pytest.raises(InputRefused) as refused:
+            within_planes((opening,), planes)
+        assert refused.value.code == "BadPlanes"
+
+
+def test_the_missing_bone_must_lie_on_the_scans_grid(tmp_path, skull, phantom):
+    bone, path = skull("burr_hole"), tmp_path / "truth.nii.gz"
+    write_nifti(cn.Volume(phantom("burr_hole").implant, bone.affine), path)
+    np.testing.assert_array_equal(read_truth(path, bone).voxels, phantom("burr_hole").implant)
+    with pytest.raises(InputRefused) as refused:
+        read_truth(path, bone.crop((slice(1, None), slice(None), slice(None))))
+    assert refused.value.code == "GridMismatch"
+    write_nifti(bone.with_voxels(np.zeros(bone.shape, bool)), path)
+    with pytest.raises(InputRefused) as refused:
+        read_truth(path, bone)
+    assert refused.value.code == "EmptyMask"
+
+
+@pytest.mark.parametrize("at", [(0, 2, 2), (4, 2, 2), (2, 0, 2), (2, 4, 2), (2, 2, 0), (2, 2, 4), (2, 2, 2), (1, 3, 1)])
+def test_a_mask_touches_the_border_where_it_has_an_outermost_voxel(at):
+    voxels = np.zeros((5, 5, 5), bool)
+    voxels[at] = True
+    mask, outermost = cn.Volume(voxels, np.eye(4)), bool({0, 4} & set(at))
+    assert touches_border(mask) == outermost
+    if outermost:
+        with pytest.raises(InputRefused, match="The hole reaches the edge"):
+            check_margin(mask, "The hole")
+    else:
+        check_margin(mask, "The hole")
+
+
+def test_a_clock_goes_on_from_what_was_measured():
+    clock = Clock({"read": 3.0})
+    clock.lap("bone")
+    assert clock.seconds["read"] == 3.0 and clock.seconds["bone"] >= 0
