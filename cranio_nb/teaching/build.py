@@ -77,6 +77,24 @@ def build(folder: Path, only: str = "") -> list[Path]:
     return made
 
 
+def is_built(path: Path) -> bool:
+    """Whether a notebook is as `build` made it, but for its outputs: nobody wrote into its cells.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    bool
+    """
+    try:
+        cells = nbformat.read(path, as_version=4).cells
+        return [cell.get("id") for cell in cells] == list(_ids(cells))
+    except Exception:  # what is no notebook was not built
+        return False
+
+
 def out_of_step(folder: Path, only: str = "") -> list[str]:
     """What differs between the notebooks of a folder and what their texts give now, one line each.
 
@@ -277,11 +295,17 @@ def _sources(folder: Path, only: str) -> list[Path]:
 
 def _notebook(cells: list[NotebookNode]) -> NotebookNode:
     """A notebook whose ids are the same whenever its cells are."""
+    for cell, name in zip(cells, _ids(cells), strict=True):
+        cell.id = name
+    return nbformat.v4.new_notebook(cells=cells, metadata=_METADATA)
+
+
+def _ids(cells: list[NotebookNode]) -> Iterator[str]:
+    """Name of each cell, from its text and how often that was there before."""
     seen: dict[str, int] = {}
     for cell in cells:
         n = seen[cell.source] = seen.get(cell.source, 0) + 1
-        cell.id = hashlib.sha256(f"{n} {cell.cell_type} {cell.source}".encode()).hexdigest()[:12]
-    return nbformat.v4.new_notebook(cells=cells, metadata=_METADATA)
+        yield hashlib.sha256(f"{n} {cell.cell_type} {cell.source}".encode()).hexdigest()[:12]
 
 
 def _check_solutions(name: str, cells: list[NotebookNode]) -> None:
