@@ -9,7 +9,9 @@ from skimage import measure, morphology
 
 from cranio_nb.curves import cubic, spiral
 from cranio_nb.stages import deformable_model
-from cranio_nb.teaching import build, check
+from cranio_nb.teaching import check
+from cranio_nb.teaching.lesson_text import read_lesson, tags
+from cranio_nb.teaching.student_copy import exercise_number, make_stub
 
 SOURCES = sorted((Path(__file__).parents[2] / "notebooks" / "src").glob("*.py"))
 LIBRARY = {
@@ -37,11 +39,11 @@ def shipped(stub):
     """Exercise -> the function of its solution cell, or of its stub in the student's copy."""
     found = {}
     for source in SOURCES:
-        cells = build.read(source).cells
+        cells = read_lesson(source).cells
         for cell in cells:
-            if "solution" in build.tags(cell):
-                number = build._next_number(cells, cell)
-                found[number] = function(build._stub(cell.source, number) if stub else cell.source)
+            if "solution" in tags(cell):
+                number = exercise_number(cells, cell)
+                found[number] = function(make_stub(cell.source, number) if stub else cell.source)
     return found
 
 
