@@ -58,7 +58,7 @@ def check_truth(made: Prosthesis, truth: Volume, bone: Volume, head_centre: NDAr
     bone : Volume
         The skull with the hole.
     head_centre : ndarray, shape (3,)
-        World mm of a point inside the cranial cavity; it tells outside from inside.
+        World mm of a point inside the cranial cavity; the outer surface faces away from it.
 
     Returns
     -------

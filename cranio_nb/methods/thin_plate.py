@@ -1,15 +1,15 @@
 """A thin plate across the hole: bone mask in, pieces out.
 
-Idea: seen from inside the head each surface of the vault is one radius per direction (`chart`). A plate that lies on
-the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
-other side of the skull has bone, radii e that are expected, and D^n all partial derivatives of order n on the chart,
+Idea: seen from inside the head each surface of the vault is one radius per direction (`RadiusMap`). A plate that lies
+on the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
+other side of the skull has bone, radii e that are expected, and D^n all partial derivatives of order n on the map,
 the radii g = e + h minimise
 
     sum w (g - f)^2 + a^4 |D^2 h|^2 + b^6 |D^3 h|^2 + c^4 sum v |D^2 (g - m)|^2 + s sum |h|^2 .
 
-Without a prior e is one radius for all and s is 0: the plate is a piece of a sphere that is bent. With one, e is what
-intact skulls let expect given this skull's bone, and springs s hold the plate to it in the hole. Near the rim the
-plate is the better informed, in the middle of a wide hole the springs are; where the other side tells of the shape,
+Without a prior e is one radius for all and s is 0: the plate is a piece of a sphere that is bent. With one, e is the
+mean of intact skulls given this skull's bone, and springs s hold the plate to it in the hole. Near the rim the
+plate is the better informed, in the middle of a wide hole the springs are; where the other side shows the shape,
 the plate is stiffer and heeds them less.
 
 The second order pulls smoothed bone towards spheres, the third towards quadrics, so that it carries the rim's
@@ -21,7 +21,7 @@ the hole only their ratios matter. The weights w and v drop bone that does not b
 sinuses (Cauchy's weights, iterated). Each surface is one sparse symmetric system, solved directly.
 
 Source: thin plates in cranioplasty are Carr, Fright and Beatson 1997 (doi 10.1109/42.563663): radial basis functions
-on a depth map, second order, interpolating. Ours are the radial chart, finite differences in place of radial
+on a depth map, second order, interpolating. Ours are the radius map, finite differences in place of radial
 functions, the third order, the smoothing, the robust weights, the inner surface, the mirrored side and the springs.
 """
 
@@ -70,7 +70,7 @@ class Plate:
 
     Parameters
     ----------
-    chart : RadiusMap
+    radius_map : RadiusMap
         The vault around the opening.
     outer, inner : ndarray, shape (M, M)
         Radii of the prosthesis, mm; nan outside the hole.
@@ -80,7 +80,7 @@ class Plate:
         Outer and inner radii that a prior predicts.
     """
 
-    chart: RadiusMap
+    radius_map: RadiusMap
     outer: Array
     inner: Array
     mirrored: tuple[Array, Array] | None
@@ -246,34 +246,34 @@ def _plate(
     bone: Volume, opening: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
     """Both plates of one opening."""
-    vault = radius_measurement.measure_around(bone, opening)
-    mirrored = None if plane is None else _other_side(bone, vault, plane)
-    expected = None if learned is None else _expected(bone, vault, learned)
-    nodes = max(1, round(_NODES / vault.step_mm))
-    hole = thinned(vault.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
-    rim = ndimage.distance_transform_edt(~vault.hole) * vault.step_mm <= _RIM
+    radius_map = radius_measurement.measure_around(bone, opening)
+    mirrored = None if plane is None else _other_side(bone, radius_map, plane)
+    expected = None if learned is None else _expected(bone, radius_map, learned)
+    nodes = max(1, round(_NODES / radius_map.step_mm))
+    hole = thinned(radius_map.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
+    rim = ndimage.distance_transform_edt(~radius_map.hole) * radius_map.step_mm <= _RIM
     radii = []
-    for i, radius in enumerate((vault.outer, vault.inner)):
+    for i, radius in enumerate((radius_map.outer, radius_map.inner)):
         known = np.where(rim, np.nan, radius)
         like, likely = (None if maps is None else thinned(maps[i], nodes) for maps in (mirrored, expected))
-        plate = bend(thinned(known, nodes), hole, vault.step_mm * nodes, like=like, expected=likely, **lengths)
-        radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))
-    return Plate(vault, radii[0], radii[1], mirrored, expected)
+        plate = bend(thinned(known, nodes), hole, radius_map.step_mm * nodes, like=like, expected=likely, **lengths)
+        radii.append(np.where(radius_map.hole, _refined(plate, nodes, radius_map.hole.shape), np.nan))
+    return Plate(radius_map, radii[0], radii[1], mirrored, expected)
 
 
-def _other_side(bone: Volume, vault: RadiusMap, plane: SymmetryPlane) -> tuple[Array, Array]:
-    """Outer and inner radii of the mirrored skull along the chart's rays; nan where it lacks bone."""
-    other = radius_measurement.measure_along(vault, plane.mirrored(bone))
+def _other_side(bone: Volume, radius_map: RadiusMap, plane: SymmetryPlane) -> tuple[Array, Array]:
+    """Outer and inner radii of the mirrored skull along the map's rays; nan where it lacks bone."""
+    other = radius_measurement.measure_along(radius_map, plane.mirrored(bone))
     return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
 
 
-def _expected(bone: Volume, vault: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
+def _expected(bone: Volume, radius_map: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
     """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
-    predicted = predict_around(learned, bone, vault)
-    if not (np.isfinite(predicted.outer) & vault.hole).any():
+    predicted = predict_around(learned, bone, radius_map)
+    if not (np.isfinite(predicted.outer) & radius_map.hole).any():
         return None
     outer, inner = (
-        ndimage.gaussian_filter(filled_from_nearest(radius), _RAYS_APART / vault.step_mm)
+        ndimage.gaussian_filter(filled_from_nearest(radius), _RAYS_APART / radius_map.step_mm)
         for radius in (predicted.outer, predicted.inner)
     )
     return outer, inner
@@ -283,8 +283,8 @@ def _solid(plate: Plate, opening: Opening, bone: Volume) -> NDArray[np.bool_]:
     """The voxels between both plates; none where bone holds no plate."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
-    outer, inner = radius_voxels.thickened(plate.chart, outer=plate.outer, inner=plate.inner)
-    between = radius_voxels.voxels_between(plate.chart, bone, outer=outer, inner=inner)
+    outer, inner = radius_voxels.thickened(plate.radius_map, outer=plate.outer, inner=plate.inner)
+    between = radius_voxels.voxels_between(plate.radius_map, bone, outer=outer, inner=inner)
     return voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
 
 

@@ -111,5 +111,5 @@ def distance_figure(
 
 
 def _with_rim(picture: Picture) -> tuple[Figure, Axes]:
-    """A rendered picture with room around it for letters and scale."""
+    """A rendered picture with a border for letters and scale."""
     return show_pixels(np.pad(picture.rgb, ((_RIM_PX, 2 * _RIM_PX), (_RIM_PX, _RIM_PX), (0, 0)), constant_values=1))

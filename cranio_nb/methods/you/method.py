@@ -123,12 +123,12 @@ def between_guides(bone: Volume, openings: Sequence[Opening], guides: Sequence[N
         yield Piece(voxels, (filling,), {"fills": [_entry(side) for side in (filling.outer, filling.inner)]})
 
 
-def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
+def find_guides(radius_map: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     """Points on the outer surface at even steps around a hole.
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
         The bone around the hole.
     n_guides : int
 
@@ -137,15 +137,15 @@ def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     ndarray, shape (n_guides, 3)
         World mm.
     """
-    soft = ndimage.gaussian_filter(vault.hole.astype(float), 1.5)
+    soft = ndimage.gaussian_filter(radius_map.hole.astype(float), 1.5)
     outline = max(find_contours(np.pad(soft, 1), 0.5), key=len)[:-1] - 1
     closed = np.concatenate([outline, outline[:1]])
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
     at = np.arange(n_guides) * along[-1] / n_guides
     v, u = (np.rint(np.interp(at, along, c)).astype(int) for c in closed.T)
-    unknown = vault.hole | ~np.isfinite(vault.outer)
+    unknown = radius_map.hole | ~np.isfinite(radius_map.outer)
     v, u = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)[:, v, u]
-    return vault.grid.centre + vault.grid.directions[v, u] * vault.outer[v, u, None]
+    return radius_map.grid.centre + radius_map.grid.directions[v, u] * radius_map.outer[v, u, None]
 
 
 def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) -> Filling:

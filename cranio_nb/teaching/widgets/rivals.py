@@ -71,8 +71,8 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
     Panel
         Control ``n``.
     """
-    vault, plane = radius_measurement.measure_around(bone, opening), sum(opening.planes) // 2
-    made = lru_cache(maxsize=None)(lambda n: _flat_fill(bone, opening, vault, n, plane, truth))
+    radius_map, plane = radius_measurement.measure_around(bone, opening), sum(opening.planes) // 2
+    made = lru_cache(maxsize=None)(lambda n: _flat_fill(bone, opening, radius_map, n, plane, truth))
     lost = np.zeros(bone.shape[1:], bool) if truth is None or truth.patch is None else truth.patch.voxels[plane]
     alt = "The hole from outside with guiding points, rim and fill; beside it a slice with the fill and what it misses."
     controls = (Slider("n", "guiding points", 3, 24, 12),)
@@ -80,10 +80,10 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
 
 
 def _flat_fill(
-    bone: Volume, opening: Opening, vault: RadiusMap, n: int, plane: int, truth: Prosthesis | None
+    bone: Volume, opening: Opening, radius_map: RadiusMap, n: int, plane: int, truth: Prosthesis | None
 ) -> FlatFill:
     """Fill a hole between `n` guiding points and measure it."""
-    made = you.fill_between(bone, opening, you.find_guides(vault, n))
+    made = you.fill_between(bone, opening, you.find_guides(radius_map, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
     patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
     nodes = made.outer.mesh.vertices

@@ -67,7 +67,7 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
         Controls ``wavelength_mm``, ``mass``, ``damping`` and ``step``.
     """
     scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
-    run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.vault, **values))
+    run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.radius_map, **values))
     controls = (
         Slider("wavelength_mm", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
         Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5),
@@ -81,12 +81,12 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     return Panel(controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, slow=True)
 
 
-def relax_sheet(vault: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
+def relax_sheet(radius_map: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
     """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps.
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
         Of few rays, or it takes long.
     wavelength_mm : float
         Ripples of this length are halved.
@@ -97,7 +97,7 @@ def relax_sheet(vault: RadiusMap, *, wavelength_mm: float, mass: float, damping:
     -------
     Way
     """
-    setting = dnurbs.fit(vault, wavelength_mm=wavelength_mm, tension_mm2=0.0, span_mm=_SPAN).settings[0]
+    setting = dnurbs.fit(radius_map, wavelength_mm=wavelength_mm, tension_mm2=0.0, span_mm=_SPAN).settings[0]
     dynamics = Dynamics(mass=mass, damping=damping)
     deep = replace(setting.natural, control=setting.natural.control * _DEEP)
     motions = [sheet_motion.start(deep, setting, dynamics)]
@@ -118,8 +118,8 @@ def _view(scene: Scene, way: Way, step: int) -> View:
     state = "at rest" if now.converged else "not at rest"
     line = f"Step {min(step, last)} of {last}, {state}: energy {now.energy:.0f} mm4"
     line += f", moved {now.moved:.2f} mm at most" if now.n_iter else ""
-    hole = scene.vault.hole
-    off = (dnurbs.radii_of(now.sheet, scene.vault) - scene.true)[hole]
+    hole = scene.radius_map.hole
+    off = (dnurbs.radii_of(now.sheet, scene.radius_map) - scene.true)[hole]
     line += f"; {error_line(off)} in the hole" if np.isfinite(off).any() else ""
     return View(canvas.array(), line + ".", limits={"step": last})
 
