@@ -106,6 +106,7 @@ def pieces(
     Piece
         The record's `sheets` describe the outer and the inner sheet; `working` holds `Sheets`.
     """
+    # without mass the motion is of first order: damping alone, no swinging
     dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
     plate = {"wavelength_mm": wavelength_mm, "tension_mm2": tension_mm2, "span_mm": span_mm}
     for opening in openings:
@@ -116,6 +117,7 @@ def pieces(
             tol_mm=tol_mm,
             max_iter=max_iter,
         )
+        # the sheets as radii on the rays, the voxels between them, and of these the piece in the hole
         radii = [_inside(made.radius_map, radii_of(part, made.radius_map)) for part in (made.outer, made.inner)]
         outer, inner = radius_voxels.thickened(made.radius_map, outer=radii[0], inner=radii[1])
         between = radius_voxels.voxels_between(made.radius_map, bone, outer=outer, inner=inner)
@@ -147,16 +149,20 @@ def fit(
     -------
     Sheets
     """
+    # uniform knots over the whole map, about span_mm apart
     spans = (max(round((len(radius_map.outer) - 1) * radius_map.step_mm / span_mm), 4),) * 2
     size = (len(radius_map.outer) - 1) * radius_map.step_mm / spans[0]
+    # rigidity k (l / 2 pi)^4 with unit strength k: bone ripples of the wavelength l are halved
     material = Material.plate(tension_mm2, (wavelength_mm / (2 * np.pi)) ** 4, (size, size))
     rests, settings = [], []
     for radius in (radius_map.outer, radius_map.inner):
+        # each surface by itself, bent as little as can be from the sphere that fits it
         springs = springs_to(radius_map, radius, spans)
         natural = _sphere(springs.points, radius_map, spans)
         rest, springs = sheet.settle(springs, natural, material, rounds=_ROUNDS)
         settings.append(Setting(springs, natural, material))
         rests.append(Motion(rest, np.zeros(0), 0.0, converged=True))
+    # with free weights the equations of motion go on from there
     if dynamics is not None:
         rests = [
             sheet_motion.relax(sheet_motion.start(m.sheet, s, dynamics), s, dynamics, tol=tol_mm, max_iter=max_iter)
@@ -183,8 +189,10 @@ def springs_to(radius_map: RadiusMap, radius: NDArray[np.float64], spans: tuple[
     Springs
         To points in mm along the map's axes from the head's centre.
     """
+    # points of the bone along the map's axes; each pulls the parameters of its own ray
     known = np.isfinite(radius) & ~radius_map.hole
     points = (radius_map.grid.directions[known] * radius[known][:, None]) @ radius_map.grid.axes.T
+    # ray index -> parameter: the sheet's spans cover the map from edge to edge
     v, u = (i * n / (len(radius) - 1) for i, n in zip(np.nonzero(known), spans, strict=True))
     return Springs(points, v, u, np.full(len(points), radius_map.step_mm**2))
 
@@ -203,10 +211,12 @@ def radii_of(one: Sheet, radius_map: RadiusMap) -> NDArray[np.float64]:
     ndarray, shape (M, M)
         mm.
     """
+    # parameters and rays are not the same: the ray v, u may meet the sheet at other parameters
     near = ndimage.binary_dilation(radius_map.hole, iterations=3)
     wanted = np.argwhere(near).astype(float)
     scale = np.array(one.spans) / (len(radius_map.outer) - 1)
     at = wanted
+    # fixed-point iteration: the point at some parameters lies on a ray; move by what that ray is off
     for _ in range(_FIND_STEPS):
         points = one.at(*(at * scale).T)
         at = np.clip(
@@ -219,16 +229,20 @@ def radii_of(one: Sheet, radius_map: RadiusMap) -> NDArray[np.float64]:
 
 def _sphere(points: NDArray[np.float64], radius_map: RadiusMap, spans: tuple[int, int]) -> Sheet:
     """The sheet on the sphere that best fits points around the hole, each ray at its own place."""
+    # |p - c|^2 = r^2 is linear in c and r^2 - |c|^2
     system = np.column_stack([2 * points, np.ones(len(points))])
     squares, weight = (points**2).sum(axis=1), np.ones(len(points))
+    # Cauchy's weights: a ridge or a dent does not move the sphere
     for _ in range(_SPHERE_ROUNDS):
         x = np.linalg.lstsq(system * weight[:, None], squares * weight, rcond=None)[0]
         radius = np.sqrt(x[3] + x[:3] @ x[:3])
         off = np.abs(np.linalg.norm(points - x[:3], axis=1) - radius)
         weight = 1 / (1 + (off / (3 * np.median(off) + 1e-6)) ** 2)
+    # where each ray leaves that sphere: t = d c + sqrt((d c)^2 + r^2 - |c|^2)
     along = radius_map.grid.directions @ radius_map.grid.axes.T
     middle = along @ x[:3]
     away = middle + np.sqrt(np.maximum(middle**2 + x[3], 0.0))
+    # a sheet through all these points with next to no bending
     v, u = np.indices(away.shape).reshape(2, -1) * np.array(spans)[:, None] / (len(away) - 1)
     springs = Springs((along * away[..., None]).reshape(-1, 3), v, u, np.ones(away.size))
     return sheet.settle(springs, sheet.flat(spans), Material((0.0, 0.0, 1e-6, 1e-6, 1e-6)))[0]

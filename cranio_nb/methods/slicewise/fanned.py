@@ -62,6 +62,7 @@ def bridge(
         results = inflate.carry(inflate.inflate(ends, np.zeros(2), settings))
         made.append(SlicedDesign(opening, fan.frames(radius_map.grid.centre), 1.0, results))
         at = fan.locate(radius_map.grid.directions[radius_map.hole])
+        # all directions are compared on the same rays, those of the radius map into the hole
         both = [_on_rays(results, boundary, profile) for boundary in (0, 1)]
         radii.append([ndimage.map_coordinates(r, at, order=1, cval=np.nan) for r, _ in both])
         weights.append([ndimage.map_coordinates(w, at, order=1, cval=0.0) for _, w in both])
@@ -70,6 +71,7 @@ def bridge(
     outer[radius_map.hole], inner[radius_map.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return tuple(made), np.zeros(bone.shape, bool)
+    # the two means are independent: where they come too close they are moved apart
     outer, inner = radius_voxels.thickened(radius_map, outer=outer, inner=inner)
     return tuple(made), radius_voxels.voxels_between(radius_map, bone, outer=outer, inner=inner)
 
@@ -91,10 +93,13 @@ def by_rays(profile: RayProfile, *, skip_mm: float, reach_mm: float, coupling_mm
     list of SliceResult
         One for each slice that crosses the hole.
     """
+    # position and tangent of each rim by itself, then the tangents of neighbours evened out
     fits = fit_rims(profile, skip_mm=skip_mm, reach_mm=reach_mm)
     tangents = share_tangents(fits.tangents, coupling_mm)  # 1 mm is one slice
+    # how much the rim bends is noisy too: its median over the same neighbours
     turns = ndimage.median_filter(np.nan_to_num(fits.turns, nan=1.0), size=(2 * round(coupling_mm) + 1, 1, 1))
     results = []
+    # a slice is bridged only when all four tangents (two boundaries, two ends) are known
     for plane in np.flatnonzero(profile.missing.any(axis=1)):
         if np.isfinite(tangents[plane]).all():
             ends = tuple(GapEnds(fits.points[plane, b], tangents[plane, b]) for b in (0, 1))
