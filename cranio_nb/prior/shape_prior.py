@@ -105,6 +105,7 @@ def conditional_mean(prior: Prior, radii: Array, wanted: Mask) -> Array:
     ndarray, shape (2, k)
         Outer and inner radius along the k wanted rays.
     """
+    # spread: factor of the sample covariance; laid: factor of what the affine frame may be off
     samples = prior.samples
     mean = samples.mean(axis=0)
     spread = (samples - mean) * np.sqrt(_SHARE / (len(samples) - 1))
@@ -128,6 +129,7 @@ def _covariance(spread: Array, laid: Array, a: NDArray[np.intp], b: NDArray[np.i
     `spread` (2 n, 2, m) holds the samples about their mean, scaled, `laid` (2, m, 12) the h.
     """
     rays = vault_rays()
+    # chord between two rays: |a - b|^2 = 2 - 2 a b
     squared = np.maximum(2 - 2 * rays[a] @ rays[b].T, 0) * RADIUS_MM**2
     # taper and k depend on the chord d between the rays alone
     taper = np.exp(squared / (-2 * _TAPER_MM**2))
@@ -148,6 +150,7 @@ def _affine_changes(radius: Array) -> Array:
     points = vault_rays() * radius[:, None]
     normals = estimate_normals(points)
     facing = np.maximum(np.einsum("ij,ij->i", normals, vault_rays()), 0.3)  # a ray that grazes the base gives no radius
+    # n / (n d) for a shift, and times p for a turn or stretch by 1 mm at the vault
     normals = normals / facing[:, None]
     turned = normals[:, :, None] * (points / RADIUS_MM)[:, None, :]
     return np.concatenate([normals, turned.reshape(-1, 9)], axis=1)
@@ -155,5 +158,6 @@ def _affine_changes(radius: Array) -> Array:
 
 def _used(known: Mask, wanted: Mask) -> Mask:
     """The known rays that are used: all near the unknown that is wanted, fewer further away."""
+    # far bone says little by each ray: a coarser set of it keeps the system small
     away = distance_mm(wanted & ~known)
     return known & ((away < _FINE_MM) | (coarse_rays(4) & (away < _MIDDLE_MM)) | coarse_rays(3))
