@@ -45,6 +45,7 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
     Panel
         Controls ``second_mm``, ``third_mm`` and ``mirror_mm``.
     """
+    # fewer rays than the method takes, so that a plate is bent at once
     fine = radius_measurement.measure_around(bone, opening)
     scene = make_scene(fine, bone, truth, _EVERY)
     try:
@@ -80,6 +81,7 @@ def _bend(scene: Scene, *, second_mm: float, third_mm: float, mirror_mm: float) 
 
 def _view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
     """Map of errors and profile of a plate."""
+    # errors in the hole where the truth is known, and on the bone beside it
     off, hole = plate - scene.true, scene.radius_map.hole
     canvas = Canvas(SIDE + WIDE, SIDE)
     _draw_map(canvas, off, hole)
