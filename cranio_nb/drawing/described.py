@@ -69,6 +69,7 @@ def described(picture: Any, alt: str, line: str) -> Described:
     """
     if not alt.strip() or not line.strip():
         raise InputRefused("NoAlt", "A picture without alternative text or without a line.", "Say what it shows.")
+    # pixels and figures are encoded; matplotlib is loaded for figures only
     if isinstance(picture, np.ndarray):
         picture = encoded_png(picture)
     elif not isinstance(picture, bytes):

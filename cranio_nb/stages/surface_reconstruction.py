@@ -134,6 +134,7 @@ def _march_cubes(field: NDArray) -> tuple[NDArray[np.float64], NDArray[np.intp]]
 
 def _distance_field(inside: NDArray[np.bool_], grid: Volume) -> NDArray[np.float64]:
     """Signed distance in mm to the nearest voxel of the other kind, at the voxels next to the surface; else +-1."""
+    # only voxels next to the surface decide where it passes
     inner = inside & ~ndimage.binary_erosion(inside)
     outer = ~inside & ndimage.binary_dilation(inside)
     place_in, place_out = grid.to_world(np.argwhere(inner)), grid.to_world(np.argwhere(outer))
@@ -193,6 +194,7 @@ def _thin(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
     Only there can the surface pass through itself within the boxes of half a voxel.
     """
+    # what a cube of 2 voxels does not fit into, in the patch and in the space around it
     cube = np.ones((2, 2, 2), bool)
     wide = np.pad(inside, 2)
     thin = wide & ~ndimage.binary_opening(wide, cube) | ~wide & ~ndimage.binary_opening(~wide, cube)
@@ -204,6 +206,7 @@ def _untangled(x: NDArray, start: NDArray, faces: NDArray[np.intp], thin: NDArra
     x = x.copy()
     watched = faces[thin[faces].any(axis=1)]
     for _ in range(_UNTANGLE_STEPS):
+        # bad faces and all faces that share a vertex with them go back
         part = Mesh(x, watched)
         bad = np.union1d(crossings(part), np.flatnonzero(part.areas < _SLIVER))
         if not len(bad):

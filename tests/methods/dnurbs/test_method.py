@@ -8,7 +8,7 @@ from cranio_nb.vault.ray_grid import RadiusMap, RayGrid
 
 
 def test_a_sheet_on_a_sphere_needs_no_springs_near_the_hole_to_stay_on_it():
-    """The natural shape: the middle of a wide hole in a sphere about another point than the eye."""
+    """The natural shape: the middle of a wide hole in a sphere about another point than the head centre."""
     n, step = 121, np.radians(1.0)
     blank = np.full((n, n), np.nan)
     vault = RadiusMap(RayGrid(np.zeros(3), np.eye(3), step, n), outer=blank, inner=blank, hole=np.zeros((n, n), bool))
