@@ -11,8 +11,8 @@ from cranio_nb.prior.file import save_prior
 def test_a_prior_draws_the_plate_towards_what_skulls_predict_but_not_off_the_rim(learned, skull, tmp_path):
     bone = skull("unilateral")
     save_prior(learned, tmp_path / "prior.npz")
-    (alone,) = thin_plate.design(bone).working
-    made = thin_plate.design(bone, prior=str(tmp_path / "prior.npz"))
+    (alone,) = design(bone, method="thin-plate").working
+    made = design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
     (plate,) = made.working
     inside = ndimage.distance_transform_edt(plate.radius_map.hole) * plate.radius_map.step_mm
     rim, middle = (inside > 0) & (inside < 3), inside > 15
@@ -34,6 +34,6 @@ def test_a_prior_that_does_not_reach_the_hole_changes_nothing(learned, skull, tm
         return Prediction(outer=nothing, inner=nothing, frame=None)
 
     monkeypatch.setattr(thin_plate, "predict_around", nowhere)
-    made = thin_plate.design(bone, prior=str(tmp_path / "prior.npz"))
-    np.testing.assert_array_equal(made.patch.voxels, thin_plate.design(bone).patch.voxels)
+    made = design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
+    np.testing.assert_array_equal(made.patch.voxels, design(bone, method="thin-plate").patch.voxels)
     assert made.working[0].expected is None
