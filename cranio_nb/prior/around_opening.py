@@ -84,19 +84,14 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     middle = prior.samples.mean(axis=0)
     radii = measure_vault(bone, frame, middle[0])
     usual = middle + local_median(radii - middle)
-    known = np.where(_untrusted(radii, radius_map, frame, middle), np.nan, without_outliers(radii, usual))
+    hole = _rays_through(radius_map, frame, middle)
+    rims = rays_near(hole, _RIM_MM) | rays_near(rays_without_bone(radii) & ~hole, _FREE_RIM_MM)
+    known = np.where(rims, np.nan, without_outliers(radii, usual))
     # what follows from it, on the rays of the map
     wanted = _rays_beside(radius_map.grid, frame)
     points = frame.to_world(vault_rays()[wanted] * conditional_mean(prior, known, wanted)[..., None])
     outer, inner = (_radius_on(radius_map.grid, frame, side) for side in points)
     return Prediction(outer=outer, inner=inner, frame=frame)
-
-
-def _untrusted(radii: Array, radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mask:
-    """Which of the `vault_rays` lead into holes or their rims; `radii` (2, m) of the skull, `middle` of the mean."""
-    # beside the measured hole its rim is known to be bevelled; other openings are found by their rays
-    hole = _rays_through(radius_map, frame, middle)
-    return rays_near(hole, _RIM_MM) | rays_near(rays_without_bone(radii) & ~hole, _FREE_RIM_MM)
 
 
 def _rays_beside(grid: RayGrid, frame: HeadFrame) -> Mask:

@@ -110,8 +110,11 @@ def conditional_mean(prior: Prior, radii: Array, wanted: Mask) -> Array:
     mean = samples.mean(axis=0)
     spread = (samples - mean) * np.sqrt(_SHARE / (len(samples) - 1))
     laid = _LAID_MM * np.stack([_affine_changes(side) for side in mean])
-    # with the known rays near the wanted ones
-    known = np.flatnonzero(_used(np.logical_and(*np.isfinite(radii)), wanted))
+    # of the known rays all near the unknown that is wanted, fewer further away
+    given = np.logical_and(*np.isfinite(radii))
+    away = distance_mm(wanted & ~given)
+    fewer = (away < _FINE_MM) | (coarse_rays(4) & (away < _MIDDLE_MM)) | coarse_rays(3)
+    known = np.flatnonzero(given & fewer)
     at = np.flatnonzero(wanted)
     if not len(known):
         return mean[:, at]
@@ -154,10 +157,3 @@ def _affine_changes(radius: Array) -> Array:
     normals = normals / facing[:, None]
     turned = normals[:, :, None] * (points / RADIUS_MM)[:, None, :]
     return np.concatenate([normals, turned.reshape(-1, 9)], axis=1)
-
-
-def _used(known: Mask, wanted: Mask) -> Mask:
-    """The known rays that are used: all near the unknown that is wanted, fewer further away."""
-    # far bone says little by each ray: a coarser set of it keeps the system small
-    away = distance_mm(wanted & ~known)
-    return known & ((away < _FINE_MM) | (coarse_rays(4) & (away < _MIDDLE_MM)) | coarse_rays(3))

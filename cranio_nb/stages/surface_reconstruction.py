@@ -91,7 +91,13 @@ def extract_surface(patch: Volume, *, smooth: bool = True, n_steps: int = 24) ->
 
     vertices, faces = _march_cubes(np.where(inside, 1.0, -1.0))
     if smooth:
-        vertices = _smoothed(vertices, faces, inside, part, n_steps)
+        raw = vertices
+        # between the voxels by signed distance; the signs alone fix the faces
+        start, same_faces = _march_cubes(_distance_field(inside, part))
+        assert np.array_equal(faces, same_faces)
+        # least bending at the same volume; where the patch is thin the surface may now cross itself
+        relaxed = _keep_volume(_relax(start, raw, faces, n_steps), raw, faces, part)
+        vertices = _untangled(relaxed, start, faces, _thin(inside)[tuple(np.rint(raw).astype(int).T)])
     mesh = Mesh(part.to_world(vertices - 1), faces)
     return mesh if mesh.volume > 0 else Mesh(mesh.vertices, faces[:, ::-1].copy())
 
@@ -124,17 +130,6 @@ def _march_cubes(field: NDArray) -> tuple[NDArray[np.float64], NDArray[np.intp]]
     """Vertices and faces of the zero level in index coordinates."""
     vertices, faces, _, _ = marching_cubes(field.astype(np.float32), 0.0, method="lorensen")
     return vertices.astype(float), faces.astype(np.intp)
-
-
-def _smoothed(raw: NDArray, faces: NDArray[np.intp], inside: NDArray[np.bool_], grid: Volume, n_steps: int) -> NDArray:
-    """Smooth vertices in index coordinates, each within half a voxel of its raw place."""
-    # between the voxels by signed distance
-    start, same_faces = _march_cubes(_distance_field(inside, grid))
-    assert np.array_equal(faces, same_faces)  # the signs alone fix the faces
-
-    # least bending at the same volume; where the patch is thin the surface may now cross itself
-    relaxed = _keep_volume(_relax(start, raw, faces, n_steps), raw, faces, grid)
-    return _untangled(relaxed, start, faces, _thin(inside)[tuple(np.rint(raw).astype(int).T)])
 
 
 def _distance_field(inside: NDArray[np.bool_], grid: Volume) -> NDArray[np.float64]:

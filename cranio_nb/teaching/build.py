@@ -261,8 +261,9 @@ def _notebooks(folder: Path, only: str) -> Iterator[tuple[Path, NotebookNode]]:
     """Each lesson as its text gives it now, executed, and its copy for students, with the files they belong in."""
     for source in _sources(folder, only):
         lesson = execute(read(source))
+        copy = exercise_copy(lesson)  # before either is handed on: a lesson without a copy is not written
         yield folder / f"{source.stem}.ipynb", lesson
-        yield folder / "exercises" / f"{source.stem}.ipynb", exercise_copy(lesson)
+        yield folder / "exercises" / f"{source.stem}.ipynb", copy
 
 
 def _sources(folder: Path, only: str) -> list[Path]:

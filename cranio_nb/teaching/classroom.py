@@ -141,10 +141,13 @@ def load(
             "or unset CRANIO_NB_SCAN.",
         )
     if path:
-        from ..pipeline.preparation import read_truth
+        from ..pipeline.preparation import check_truth_mask
 
         ct = read_ct(path)[0]
-        return LessonCase(ct, read_truth(known, ct) if known else None, None)
+        mask = read_ct(known, mask=True)[0] if known else None
+        if mask is not None:
+            check_truth_mask(mask, ct)
+        return LessonCase(ct, mask, None)
     return synthetic(os.environ.get("CRANIO_NB_SIZE") or size, defect, seed)
 
 

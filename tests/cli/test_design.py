@@ -13,7 +13,7 @@ from cli_runs import OUTPUTS, assert_refused, cranio, digest
 
 from cranio_nb.output import design_folder
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.pipeline import run
+from cranio_nb.pipeline import preparation, run
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import Volume
 from data_synth import Case, write_dicom
@@ -187,7 +187,7 @@ def test_planes_without_an_opening(home, tmp_path):
 
 def test_truth_on_another_grid_is_refused_before_any_work(case, home, tmp_path, monkeypatch):
     write_nifti(Volume(case.implant[:-1], case.affine), tmp_path / "truth.nii.gz")
-    monkeypatch.setattr(run, "bone_of", lambda *a: pytest.fail("work was done"))
+    monkeypatch.setattr(preparation, "bone_of", lambda *a: pytest.fail("work was done"))
     arguments = ("--truth", tmp_path / "truth.nii.gz", "--out", tmp_path / "out")
     assert_refused(cranio("design", home / "ct", *arguments), 3, "truth")
     assert not (tmp_path / "out").exists()
@@ -208,7 +208,7 @@ def test_threshold_of_a_mask_is_refused(closed_skull, tmp_path):
 
 @pytest.mark.parametrize("kind", ["a file", "below a file", "folder of that name"])
 def test_unwritable_output_is_refused_before_any_work(kind, home, tmp_path, monkeypatch):
-    monkeypatch.setattr(run, "read_ct", lambda *a, **k: pytest.fail("work was done"))
+    monkeypatch.setattr(preparation, "read_ct", lambda *a, **k: pytest.fail("work was done"))
     blocker = tmp_path / "out"
     if kind == "folder of that name":
         (blocker / "design.json").mkdir(parents=True)

@@ -4,6 +4,7 @@ import numpy as np
 from scipy import ndimage
 
 from cranio_nb.methods import thin_plate
+from cranio_nb.methods.design import design
 from cranio_nb.prior.around_opening import Prediction
 from cranio_nb.prior.file import save_prior
 

@@ -24,7 +24,7 @@ SMALL = '''# %% [markdown]
 # %% tags=["nbval-check-output"]
 import numpy as np
 
-from cranio_nb.teaching import classroom
+from cranio_nb.teaching import pictures
 
 print(np.arange(3))
 
@@ -41,9 +41,9 @@ from cranio_nb.teaching import check
 check.exercise("4.1", apex)
 
 # %% tags=["expected"]
-fig, (ax,) = classroom.axes()
+fig, (ax,) = pictures.axes()
 ax.plot([apex(0.1, n) for n in range(5)])
-classroom.picture(fig, "A rising curve.", "5 points")
+pictures.picture(fig, "A rising curve.", "5 points")
 
 # %% tags=["raises-exception"]
 raise ValueError("on purpose")

@@ -1,4 +1,4 @@
-"""The method made of two sheets: a hole in a sphere, and free weights."""
+"""The method made of two sheets."""
 
 import numpy as np
 
@@ -11,20 +11,18 @@ def test_a_sheet_on_a_sphere_needs_no_springs_near_the_hole_to_stay_on_it():
     """The natural shape: the middle of a wide hole in a sphere about another point than the head centre."""
     n, step = 121, np.radians(1.0)
     blank = np.full((n, n), np.nan)
-    radius_map = RadiusMap(
-        RayGrid(np.zeros(3), np.eye(3), step, n), outer=blank, inner=blank, hole=np.zeros((n, n), bool)
-    )
+    vault = RadiusMap(RayGrid(np.zeros(3), np.eye(3), step, n), outer=blank, inner=blank, hole=np.zeros((n, n), bool))
     middle, radius = np.array([4.0, -3.0, 6.0]), 80.0
-    along = radius_map.grid.directions @ middle
+    along = vault.grid.directions @ middle
     outer = along + np.sqrt(along**2 + radius**2 - middle @ middle)
     away = np.hypot(*(np.indices((n, n)) - 60))
     hole = away < 35
-    radius_map = RadiusMap(RayGrid(np.zeros(3), np.eye(3), step, n), outer=outer, inner=outer - 6, hole=hole)
-    made = dnurbs.fit(radius_map, wavelength_mm=20.0, tension_mm2=0.0, span_mm=8.0)
-    error = dnurbs.radii_of(made.outer, radius_map)[hole] - outer[hole]
+    vault = RadiusMap(RayGrid(np.zeros(3), np.eye(3), step, n), outer=outer, inner=outer - 6, hole=hole)
+    made = dnurbs.fit(vault, wavelength_mm=20.0, tension_mm2=0.0, span_mm=8.0)
+    error = dnurbs.radii_of(made.outer, vault)[hole] - outer[hole]
     assert np.abs(error).max() < 0.02
-    tense = dnurbs.fit(radius_map, wavelength_mm=20.0, tension_mm2=0.0, span_mm=16.0)
-    assert np.abs(dnurbs.radii_of(tense.outer, radius_map)[hole] - outer[hole]).max() < 0.1
+    tense = dnurbs.fit(vault, wavelength_mm=20.0, tension_mm2=0.0, span_mm=16.0)
+    assert np.abs(dnurbs.radii_of(tense.outer, vault)[hole] - outer[hole]).max() < 0.1
 
 
 def test_free_weights_design_a_prosthesis_and_say_how(skull, openings):

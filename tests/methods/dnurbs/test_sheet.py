@@ -1,21 +1,11 @@
-"""The rational sheet and its energy: shapes and integrals known in closed form."""
+"""The rational sheet and its energy: planes, spheres, and integrals in closed form."""
 
 import numpy as np
 import pytest
-from sheets import SHAPE, SPANS, greville, plane, random_places, random_sheet
+from sheets import SHAPE, SPANS, greville, plane
 
 from cranio_nb.methods.dnurbs import sheet
 from cranio_nb.methods.dnurbs.sheet import Material, Sheet, Springs
-
-
-@pytest.fixture
-def places():
-    return random_places()
-
-
-@pytest.fixture
-def wild():
-    return random_sheet()
 
 
 def test_the_basis_is_a_partition_of_unity_and_its_derivatives_sum_to_nothing(places):
@@ -105,8 +95,7 @@ def test_a_plate_means_the_same_whatever_its_spans():
     assert energies == pytest.approx([4.0 * 36 * 36] * 2)
 
 
-def test_springs_far_off_are_weakened():
-    rng = np.random.default_rng(7)
+def test_springs_far_off_are_weakened(rng):
     v, u = rng.uniform(0, SPANS[0], 300), rng.uniform(0, SPANS[1], 300)
     points = plane().at(v, u)
     points[::20, 2] += 8.0
