@@ -86,10 +86,8 @@ def bundle(picture: bytes, alt: str, line: str) -> Bundle:
     ----------
     picture : bytes
         PNG.
-    alt : str
-        What is to be seen, for those who cannot see it.
-    line : str
-        What stands for the picture where there is only text.
+    alt, line : str
+        As for `described`.
 
     Returns
     -------

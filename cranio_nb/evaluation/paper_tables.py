@@ -60,7 +60,7 @@ def count_statuses(slices: Sequence[dict[str, Any]]) -> dict[str, int]:
     Parameters
     ----------
     slices : sequence of dict
-        `Prosthesis.record["slices"]`.
+        As for `balloon_ranges`.
 
     Returns
     -------
@@ -82,7 +82,7 @@ def count_not_converged(slices: Sequence[dict[str, Any]]) -> int:
     Parameters
     ----------
     slices : sequence of dict
-        `Prosthesis.record["slices"]`.
+        As for `balloon_ranges`.
 
     Returns
     -------

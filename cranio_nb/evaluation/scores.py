@@ -152,7 +152,7 @@ def volume_ratio(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------
@@ -190,7 +190,7 @@ def hd95(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------
@@ -206,7 +206,7 @@ def assd(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------
@@ -222,7 +222,7 @@ def rmse(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------

@@ -70,10 +70,8 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) ->
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     axial : bool
         Hulls of the slices along the planes of the scan, as the paper; otherwise hulls in space.
 

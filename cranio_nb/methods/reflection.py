@@ -90,10 +90,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     partial : bool
         Where the other side lacks bone too, leave that part (or that whole opening) open instead of refusing.
     fit_rim : bool

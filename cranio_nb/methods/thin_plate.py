@@ -100,10 +100,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     second_mm, third_mm : float
         The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
     mirror_mm : float

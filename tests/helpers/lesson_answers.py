@@ -4,6 +4,7 @@ import ast
 from pathlib import Path
 
 import numpy as np
+import pytest
 from scipy import ndimage, spatial
 from skimage import measure, morphology
 
@@ -57,11 +58,25 @@ def written(name, body):
     return function(f"def answer({arguments}):\n    {body}")
 
 
-def listed(wrong):
-    """(exercise, body, hint) of every wrong answer, for a test's parameters."""
-    return [(name, *answer) for name, answers in wrong.items() for answer in answers]
-
-
 def judge(name, body):
     """The verdict on a body of an exercise's function."""
     return check.exercise(name, written(name, body))
+
+
+def hint_tests(wrong, exercises, complete=lambda name, body: body):
+    """The two tests of a lesson: all exercises have typical wrong answers, and each of these gets its hint.
+
+    `wrong` holds (body, words of the hint) by exercise, `complete` makes a whole body of what is written there.
+    """
+
+    def test_every_exercise_has_wrong_answers():
+        assert list(wrong) == list(exercises) and all(len(answers) >= 3 for answers in wrong.values())
+
+    listed = [(name, *answer) for name, answers in wrong.items() for answer in answers]
+
+    @pytest.mark.parametrize(("name", "body", "hint"), listed)
+    def test_a_typical_wrong_answer_gets_its_hint(name, body, hint):
+        verdict = judge(name, complete(name, body))
+        assert not verdict.passed and hint in verdict.message
+
+    return test_every_exercise_has_wrong_answers, test_a_typical_wrong_answer_gets_its_hint

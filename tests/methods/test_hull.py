@@ -2,30 +2,10 @@
 
 import numpy as np
 import pytest
+from hollow_ball import CENTRE, HALF_DEG, INNER, OUTER, STEP, ball
 
 from cranio_nb.errors import NoOpening
 from cranio_nb.methods.design import design
-from cranio_nb.opening import Opening
-from cranio_nb.volume import Volume
-
-INNER, OUTER, HALF = 72.0, 80.0, 22.0  # mm, mm, degrees
-CENTRE = np.array([-104.0, 33.0, -812.0])
-STEP = 1.5
-
-
-def ball(towards):
-    """A hollow ball about `CENTRE` with a conical hole, and its opening."""
-    reach = OUTER + 6
-    n = int(2 * reach / STEP)
-    affine = np.eye(4)
-    affine[:3, :3], affine[:3, 3] = np.eye(3)[:, ::-1] * STEP, CENTRE - reach
-    away = np.moveaxis(np.indices((n, n, n)), 0, -1) @ affine[:3, :3].T - reach
-    radius = np.linalg.norm(away, axis=-1)
-    cosine = away @ (towards / np.linalg.norm(towards)) / np.maximum(radius, 1e-9)
-    hole = cosine > np.cos(np.radians(HALF))
-    bone = (radius >= INNER) & (radius <= OUTER) & ~hole
-    sheet = (radius >= OUTER - 4) & (radius <= OUTER) & hole
-    return Volume(bone, affine), Opening(Volume(sheet, affine), CENTRE)
 
 
 def depths(made, towards):
@@ -40,7 +20,7 @@ def test_a_round_hole_gets_a_flat_lid_from_rim_to_rim(axial):
     bone, opening = ball(towards)
     made = design(bone, (opening,), axial=axial, method="hull")
     height = depths(made, towards)
-    lid, floor = OUTER * np.cos(np.radians(HALF)), INNER * np.cos(np.radians(HALF))
+    lid, floor = OUTER * np.cos(np.radians(HALF_DEG)), INNER * np.cos(np.radians(HALF_DEG))
     assert np.quantile(height, 0.99) < lid + 1.5 * STEP and np.quantile(height, 0.01) > floor - 1.5 * STEP
     assert np.quantile(height, 0.95) == pytest.approx(lid, abs=2.0)
     assert height.max() < OUTER - 2  # the ball's own cap would reach up to OUTER

@@ -86,10 +86,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     wavelength_mm : float
         Ripples of the bone of this length in mm are halved; the rigidity follows from it.
     tension_mm2 : float

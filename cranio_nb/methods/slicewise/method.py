@@ -76,10 +76,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     axial : bool
         As the paper: the planes of the scan, features by skeleton and convex hull.
         Otherwise fans of planes from inside the head, features along rays.

@@ -79,10 +79,8 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, n_guides: int = 12) -> 
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     n_guides : int
         Guiding points around each hole, 3 at least.
 

@@ -55,11 +55,8 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull.
-    opening : Opening
-    truth : Prosthesis, optional
-        The missing bone with its patch, where it is known (`against_truth.true_prosthesis`).
+    bone, opening, truth
+        As for `plate.bent_plate`.
 
     Returns
     -------
