@@ -8,9 +8,7 @@ import pytest
 
 import cranio_nb
 
-MODULES = sorted(
-    module.name for module in pkgutil.walk_packages(cranio_nb.__path__, "cranio_nb.") if ".cli" not in module.name
-)
+MODULES = sorted(module.name for module in pkgutil.walk_packages(cranio_nb.__path__, "cranio_nb."))
 FINDER = doctest.DocTestFinder(exclude_empty=True)
 FLAGS = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
 

@@ -9,7 +9,7 @@ import click
 
 from ..errors import InputRefused, NoOpening
 from ..methods.catalogue import METHODS
-from .options import PATH, allow, check_not_input, debug, mask, threshold, truth
+from .options import PATH, allow, check_reads, check_writes, debug, mask, threshold, truth
 
 if TYPE_CHECKING:
     from ..pipeline.compare import Comparison, Measure
@@ -50,7 +50,7 @@ def compare(
       cranio-nb compare skull.nii.gz --mask --method slicewise --method slicewise:paper
     """
     from ..output.comparison_folder import FILES, write_comparison
-    from ..output.staging import check_folder, staged
+    from ..output.staging import staged
     from ..pipeline.compare import compare as run_all
     from ..pipeline.preparation import prepare
     from ..pipeline.trial import contenders
@@ -60,15 +60,15 @@ def compare(
         asked = contenders(methods)
     except InputRefused as error:
         raise click.BadParameter(str(error), param_hint="--method") from None
+    check_reads(scan=scan, truth=truth)
     if out is not None:
-        check_not_input(out, scan)
-        check_folder(out, FILES)
+        check_writes(out, FILES, {"scan": scan, "truth": truth})
     with progress_bar() as progress:
         case = prepare(scan, mask=mask or None, threshold=threshold, truth=truth, allow=allow, progress=progress)
         found = run_all(case, asked, progress=lambda name, done: progress(name, 0.4 + 0.5 * done))
         if out is not None:
             progress("report", 0.92)
-            with staged(out) as part:
+            with staged(out, FILES) as part:
                 write_comparison(found, part)
     _print(found, out)
     if not found.made:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, SIZES, check_case_folder, debug
+from .options import CASE, PATH, SIZES, check_writes, debug
 
 
 @click.command()
@@ -27,14 +27,15 @@ def demo(out: Path, size: str) -> None:
     from data_synth import phantom_case
     from data_synth.files import write_case
 
+    from ..output import comparison_folder
     from ..output.design_folder import FILES, write_outputs
-    from ..output.staging import check_folder, staged
+    from ..output.staging import staged
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
-    check_folder(out, FILES)
-    check_case_folder(out)
-    with progress_bar() as progress, staged(out) as part:
+    names = (*CASE, *FILES)
+    check_writes(out, names, {}, results=comparison_folder.FILES, n_bytes=128_000_000 if size == "full" else 32_000_000)
+    with progress_bar() as progress, staged(out, names) as part:
         progress("synthetic CT", 0.0)
         write_case(part, phantom_case(size, "unilateral", 0))
         result = run_design(part / "ct", truth=part / "truth.nii.gz", progress=progress)

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from .method_name import MethodName, check_asked
-from .options import PATH, allow, check_not_input, debug, mask, parse_planes, read_params, threshold, truth
+from .options import PATH, allow, check_writes, debug, mask, parse_planes, read_params, threshold, truth
 
 
 @click.command()
@@ -48,7 +48,7 @@ def design(
       cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
     """
     from ..output.design_folder import FILES, write_outputs
-    from ..output.staging import check_folder, staged
+    from ..output.staging import staged
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
@@ -56,8 +56,9 @@ def design(
     check_asked(method, preset)
     options, between = read_params(method, params), parse_planes(planes)
     options |= {} if prior is None else {"prior": str(prior)}
-    check_not_input(out, scan)
-    check_folder(out, FILES)
+    learned = options.get("prior")
+    reads = {"scan": scan, "truth": truth, "params": params, "prior": Path(learned) if learned else None}
+    check_writes(out, FILES, reads)
     with progress_bar() as progress:
         result = run_design(
             scan,
@@ -71,6 +72,6 @@ def design(
             allow=allow,
             progress=progress,
         )
-        with staged(out) as part:
+        with staged(out, FILES) as part:
             write_outputs(result, part, progress)
     print_result(result, out)

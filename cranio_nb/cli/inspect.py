@@ -9,7 +9,7 @@ import click
 
 from ..errors import CranioError
 from ..readers import read_ct
-from .options import PATH, allow, as_json, debug, mask, threshold
+from .options import PATH, allow, as_json, check_reads, debug, mask, threshold
 
 if TYPE_CHECKING:
     from ..evaluation.opening_size import OpeningSize
@@ -36,6 +36,7 @@ def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, .
     from ..vault.opening_search import find_openings
     from .console import print_json, print_load, print_openings, progress_bar
 
+    check_reads(scan=scan)
     with progress_bar() as progress:
         volume, load = read_ct(scan, mask=mask or None, allow=allow, progress=lambda i, n: progress("reading", i / n))
     # what was read is printed also where the skull is refused; the refusal ends the command

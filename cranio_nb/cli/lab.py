@@ -13,11 +13,12 @@ from .options import PATH, debug
 @click.argument("folder", required=False, type=PATH)
 @click.option("--no-browser", is_flag=True, help="Print the address instead of opening a browser.")
 @click.option("--port", type=int, help="Port to listen on.  [default: 8888, or the next free one]")
+@click.option("--allow-root", is_flag=True, help="Open it also as root: notebooks then have all rights.")
 @debug
-def lab(folder: Path | None, no_browser: bool, port: int | None) -> None:
+def lab(folder: Path | None, no_browser: bool, port: int | None, allow_root: bool) -> None:
     """Open the lessons in JupyterLab, at the tour.
 
-    FOLDER holds the lessons; by default ./notebooks. Nothing but JupyterLab is started; Ctrl+C ends it.
+    FOLDER holds the lessons; by default ./notebooks. Nothing but JupyterLab is started; Ctrl+C ends it and its kernels.
 
     \b
     Examples:
@@ -26,5 +27,5 @@ def lab(folder: Path | None, no_browser: bool, port: int | None) -> None:
     """
     from ..teaching.lab.start import open_lab
 
-    if code := open_lab(folder, browser=not no_browser, port=port):
+    if code := open_lab(folder, browser=not no_browser, port=port, allow_root=allow_root):
         raise click.exceptions.Exit(code)

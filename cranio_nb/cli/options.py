@@ -6,6 +6,7 @@ Nothing here loads more than click and the names of the methods, so that `--help
 from __future__ import annotations
 
 import json
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ from ..readers import ALLOWANCES
 PATH = click.Path(path_type=Path)
 SIZES = ("tiny", "class", "full")
 """Grids of the synthetic head."""
+CASE = ("ct", "mask.nii.gz", "truth.nii.gz", "truth.json")
+"""What a synthetic case leaves in its folder."""
 
 
 def _set_debug(ctx: click.Context, _: click.Parameter, value: bool) -> None:
@@ -111,26 +114,58 @@ def parse_planes(text: str | None) -> tuple[int, int] | None:
     return first, last
 
 
-def check_not_input(out: Path, scan: Path) -> None:
-    """Refuse to write where the input is.
+def check_reads(**reads: Path | None) -> None:
+    """Refuse paths that are not there.
+
+    Parameters
+    ----------
+    **reads : Path or None
+        Option or argument of the command line -> its path; "scan" is called INPUT.
+
+    Raises
+    ------
+    InputRefused
+        ``NotFound``, saying which path it is.
+    """
+    from ..output import guard
+
+    guard.check_reads(_named(reads))
+
+
+def check_writes(out: Path, names: Collection[str], reads: Mapping[str, Path | None], **limits: Any) -> None:
+    """Refuse, before any work is done, to write on, into or over what is read, or over what is not the program's own.
+
+    Parameters
+    ----------
+    out : Path
+        Folder that gets the files.
+    names : collection of str
+        Of the files and folders that are written.
+    reads : mapping of str to Path or None
+        As for `check_reads`.
+    **limits : Any
+        As for `output.guard.check_writes`.
 
     Raises
     ------
     click.BadParameter
-        If both are the same place.
+        If an output would be, replace or lie in what is read.
+    InputRefused, CannotWrite
+        As `output.guard.check_writes`.
     """
-    if out.resolve() == scan.resolve():
-        raise click.BadParameter("this is the input; nothing is ever written there.", param_hint="--out")
+    from ..output import guard
+    from ..output.manifest import MANIFEST
+
+    own_manifest = () if "own" in limits else (MANIFEST,)
+    try:
+        guard.check_writes(out, (*names, *own_manifest), _named(reads), **limits)
+    except CannotWrite as error:
+        if error.code != "OverInput":
+            raise
+        raise click.BadParameter(str(error), param_hint="the output") from None
 
 
-def check_case_folder(out: Path) -> None:
-    """Refuse a folder whose `ct` no earlier synthetic case can have left: it would be replaced.
-
-    Raises
-    ------
-    CannotWrite
-        If there is a folder `ct` and no `truth.json` beside it.
-    """
-    if (out / "ct").exists() and not (out / "truth.json").is_file():
-        message = "The output folder holds a folder named ct that was not written by this command."
-        raise CannotWrite("CannotWrite", message, "Name another folder.")
+def _named(reads: Mapping[str, Path | None]) -> dict[str, Path | None]:
+    """The paths by what they are called on the command line."""
+    called = {"scan": "INPUT", "from_": "--from", "patch": "PATCH"}
+    return {called.get(name, f"--{name}" if name.islower() else name): path for name, path in reads.items()}

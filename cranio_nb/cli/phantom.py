@@ -9,7 +9,7 @@ import click
 
 from ..errors import InputRefused
 from ..readers import read_ct
-from .options import PATH, SIZES, allow, check_case_folder, debug
+from .options import CASE, PATH, SIZES, allow, check_writes, debug
 
 if TYPE_CHECKING:
     from data_synth import Case
@@ -36,19 +36,26 @@ def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, a
     from data_synth import DEFECTS, phantom_case
     from data_synth.files import write_case
 
-    from ..output.staging import check_folder, staged
+    from ..output import comparison_folder, design_folder
+    from ..output.staging import staged
     from .console import progress_bar
 
     if defect not in DEFECTS:
         raise click.BadParameter(f"there is none named {defect!r}; choose one of {', '.join(DEFECTS)}.")
-    check_folder(out, ("truth.nii.gz", "truth.json"))
-    check_case_folder(out)
-    with progress_bar() as progress, staged(out) as part:
+    results = (*design_folder.FILES, *comparison_folder.FILES)
+    check_writes(out, CASE, {"from_": source}, results=results, n_bytes=_room(source))
+    with progress_bar() as progress, staged(out, CASE) as part:
         progress("making the case", 0.0)
         case = phantom_case(size, defect, seed) if source is None else _cut(source, defect, seed, allow)
         write_case(part, case)
         progress("done", 1.0)
     click.echo(f"{out / ('mask.nii.gz' if case.hu is None else 'ct')}\n{out / 'truth.nii.gz'}")
+
+
+def _room(source: Path | None) -> int:
+    """Bytes that the case may take: a compressed scan grows to about four times its size."""
+    files = [] if source is None else [source] if source.is_file() else source.rglob("*")
+    return 64_000_000 + 4 * sum(path.stat().st_size for path in files if path.is_file())
 
 
 def _cut(source: Path, defect: str, seed: int, allow: tuple[str, ...]) -> Case:

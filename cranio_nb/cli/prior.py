@@ -6,7 +6,8 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, debug, threshold
+from ..errors import InputRefused
+from .options import PATH, check_writes, debug, threshold
 
 
 @click.group()
@@ -34,15 +35,17 @@ def learn(folder: Path, out: Path, threshold: float | None) -> None:
     Example:
       cranio-nb prior learn scans/intact --out prior.npz
     """
-    from ..output.staging import check_folder
+    from ..output.part_folder import part_folder
     from ..prior.file import save_prior
     from ..prior.learning import learn_prior
     from ..prior.study import list_scans, measure_learning_curve, read_intact_skulls
     from ..stages.segmentation import BONE_HU
     from .console import print_table, progress_bar
 
-    check_folder(out.absolute().parent, (out.name,))
-    scans = list_scans(folder)
+    home, scans = out.absolute().parent, list_scans(folder)
+    # the file may lie beside the scans, but not among the slices of one
+    reads = {f"FOLDER, scan {i}": path for i, path in enumerate(scans, 1)}
+    check_writes(home, (out.name,), reads, own=_is_prior)
     with progress_bar() as progress:
         bones = read_intact_skulls(
             scans,
@@ -52,9 +55,22 @@ def learn(folder: Path, out: Path, threshold: float | None) -> None:
         )
         made = learn_prior(bones, progress)
         rows = measure_learning_curve(made, progress=progress) if len(made.radii) > 2 else ()
-        out.absolute().parent.mkdir(parents=True, exist_ok=True)
-        save_prior(made, out)
+        home.mkdir(parents=True, exist_ok=True)
+        with part_folder(home) as part:
+            save_prior(made, part / "files" / "prior.npz")
+            (part / "files" / "prior.npz").replace(out)
     found = [(str(r.n_skulls), f"{r.outer:.2f}", f"{r.inner:.2f}") for r in rows]
     if found:
         print_table("Error in a hole of a skull that was left out", ("Skulls", "Outer (mm)", "Inner (mm)"), found)
     click.echo(f"{len(made.radii)} of {len(scans)} scans learned: {out}")
+
+
+def _is_prior(folder: Path, name: str) -> bool:
+    """Whether a file is a shape prior, which a new one may replace."""
+    from ..prior.file import load_prior
+
+    try:
+        load_prior(folder / name)
+    except InputRefused:
+        return False
+    return True

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..readers import read_ct
-from .options import PATH, allow, as_json, debug, mask, threshold
+from .options import PATH, allow, as_json, check_reads, debug, mask, threshold
 
 _UNITS = {"hd95": "mm", "assd": "mm", "rmse": "mm", "overlap": "voxels"}
 
@@ -44,6 +44,7 @@ def score(
     from ..stages.segmentation import bone_of
     from .console import print_json, print_table
 
+    check_reads(patch=patch, TRUTH=truth, skull=skull)
     (made, _), (true, _) = read_ct(patch, mask=True), read_ct(truth, mask=True)
     scan, _ = read_ct(skull, mask=mask or None, allow=allow)
     # the same bone that a design of this scan starts from

@@ -12,7 +12,7 @@ import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from importlib.util import find_spec
 from typing import Any
 
@@ -26,6 +26,7 @@ from ..volume import Volume
 from .coarse_skull import skull_surface
 from .described import Bundle, bundle, encoded_png
 from .front_end import is_local, mode
+from .local_server import NAME, running_server
 from .palette import BLUE, GREEN, ORANGE, PURPLE, SKULL, SKY, rgb_shares
 from .pixels import RGB
 from .scene_picture import HEIGHT, WIDTH, Part, draw_parts, top_of_scale
@@ -209,7 +210,11 @@ class Scene:
         -------
         pyvista's viewer
         """
-        return plotter(self).show(jupyter_backend="client", return_viewer=True)
+        made = plotter(self)  # before the server, whose parts must not search for more
+        server = running_server()
+        asked = {"name": NAME, "handler": partial(_frame, server.options["key"])}
+        asked |= {"jupyter_extension_enabled": False, "server_proxy_enabled": False}
+        return made.show(jupyter_backend="client", jupyter_kwargs=asked, return_viewer=True)
 
     @cached_property
     def page(self) -> str:
@@ -256,6 +261,13 @@ def plotter(scene: Scene, max_faces: int = MAX_FACES) -> Any:
         made.add_mesh(surface, name=part.label or None, smooth_shading=True, **_colouring(part, scene))
     made.camera_position = _camera(scene)
     return made
+
+
+def _frame(key: str, viewer: Any, address: str, **more: Any) -> Any:
+    """The frame of a live scene, whose address holds the key of its server."""
+    from trame_pyvista.jupyter import Widget
+
+    return Widget(viewer, f"{address}&secret={key}", **more)
 
 
 def _colouring(part: Part, scene: Scene) -> dict[str, Any]:

@@ -21,9 +21,11 @@ from ..pipeline.run import RunResult
 from ..prosthesis import Prosthesis
 from ..readers import LoadReport
 from . import files
+from .guard import check_writes
+from .manifest import MANIFEST
 from .mesh_files import write_mesh
 from .nifti_files import write_nifti
-from .staging import check_folder, staged
+from .staging import staged
 
 FILES = ("prosthesis.stl", "patch.nii.gz", "design.json", "report.html")
 """What a run leaves in its folder."""
@@ -99,9 +101,9 @@ def save(made: Prosthesis, folder: str | PathLike[str], report: LoadReport | Non
     """
     # what can be refused is refused before anything is written
     folder = Path(folder)
-    check_folder(folder, FILES)
+    check_writes(folder, (*FILES, MANIFEST))
     mesh = check_mesh(made.mesh)
-    with staged(folder) as part:
+    with staged(folder, FILES) as part:
         _write_shapes(made, part, mesh, None if report is None else report.order)
         load = None if report is None else load_record(report)
         files.write_json(part / "design.json", made_record(made) | {"mesh": mesh, "load": load})

@@ -15,7 +15,7 @@ def test_writes_its_files_and_prints_the_table(compared_home, tmp_path):
     arguments = ("--truth", compared_home / "truth.nii.gz", "--method", "slicewise:paper", "--out", tmp_path / "out")
     result = cranio("compare", compared_home / "skull.nii.gz", *arguments)
     assert result.exit_code == 0, result.output
-    assert {p.name for p in (tmp_path / "out").iterdir()} == set(comparison_folder.FILES)
+    assert {p.name for p in (tmp_path / "out").iterdir()} == {*comparison_folder.FILES, "manifest.json"}
     assert "slicewise:paper" in result.stdout and "Border DSC" in result.stdout and result.stderr == ""
     text = (tmp_path / "out" / "comparison.html").read_text()
     assert str(compared_home) not in text

@@ -227,21 +227,26 @@ def test_a_failure_while_writing_leaves_nothing(home, paper, tmp_path, monkeypat
     monkeypatch.setattr(design_folder.files, "write_text", full_disk)
     assert_refused(cranio("design", home / "ct", "--out", tmp_path / "new" / "out"), 5, "No space left")
     assert list(tmp_path.iterdir()) == []
-    (tmp_path / "old").mkdir()
-    (tmp_path / "old" / "design.json").write_text("earlier")
+    monkeypatch.undo()
+    monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
+    assert cranio("design", home / "ct", "--out", tmp_path / "old").exit_code == 0
     before = digest(tmp_path)
+    monkeypatch.setattr(design_folder.files, "write_text", full_disk)
     assert cranio("design", home / "ct", "--out", tmp_path / "old").exit_code == 5
-    assert digest(tmp_path) == before and len(list((tmp_path / "old").iterdir())) == 1
+    assert digest(tmp_path) == before and {p.name for p in (tmp_path / "old").iterdir()} == OUTPUTS
 
 
 def test_an_existing_folder_keeps_what_is_not_ours(home, paper, tmp_path, monkeypatch):
     monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
     (tmp_path / "notes.txt").write_text("mine")
-    (tmp_path / "design.json").write_text("earlier")
-    assert cranio("design", home / "ct", "--out", tmp_path).exit_code == 0
-    assert {p.name for p in tmp_path.iterdir()} == OUTPUTS | {"notes.txt"}
-    assert (tmp_path / "notes.txt").read_text() == "mine"
-    assert json.loads((tmp_path / "design.json").read_text())["method"] == "slicewise"
+    for _ in range(2):
+        assert cranio("design", home / "ct", "--out", tmp_path).exit_code == 0
+        assert {p.name for p in tmp_path.iterdir()} == OUTPUTS | {"notes.txt"}
+        assert (tmp_path / "notes.txt").read_text() == "mine"
+    (tmp_path / "design.json").write_text("mine, too")
+    before = digest(tmp_path)
+    assert_refused(cranio("design", home / "ct", "--out", tmp_path), 5, "design.json")
+    assert digest(tmp_path) == before
 
 
 @pytest.mark.real

@@ -6,7 +6,7 @@ import click
 import pytest
 
 from cranio_nb.cli import options
-from cranio_nb.errors import CannotWrite
+from cranio_nb.errors import InputRefused
 
 
 @pytest.mark.parametrize(("text", "planes"), [("0:0", (0, 0)), ("40:75", (40, 75)), (None, None)])
@@ -38,15 +38,16 @@ def test_other_params_are_a_usage_error(text, tmp_path):
 
 def test_the_input_is_no_output(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(click.BadParameter):
-        options.check_not_input(Path("ct"), tmp_path / "ct")
-    options.check_not_input(Path("out"), tmp_path / "ct")
-
-
-def test_a_series_of_another_is_not_replaced(tmp_path):
-    options.check_case_folder(tmp_path)
     (tmp_path / "ct").mkdir()
-    with pytest.raises(CannotWrite, match="named ct"):
-        options.check_case_folder(tmp_path)
-    (tmp_path / "truth.json").write_text("{}")
-    options.check_case_folder(tmp_path)
+    with pytest.raises(click.BadParameter, match="INPUT"):
+        options.check_writes(Path("ct"), ("a.txt",), {"scan": tmp_path / "ct"})
+    options.check_writes(Path("out"), ("a.txt",), {"scan": tmp_path / "ct"})
+
+
+@pytest.mark.parametrize(
+    ("name", "called"), [("scan", "INPUT"), ("from_", "--from"), ("truth", "--truth"), ("patch", "PATCH")]
+)
+def test_the_path_that_is_missing_is_called_as_on_the_command_line(name, called, tmp_path):
+    with pytest.raises(InputRefused, match=f"given as {called}") as refusal:
+        options.check_reads(**{name: tmp_path / "none"})
+    assert refusal.value.code == "NotFound" and str(tmp_path) not in str(refusal.value)

@@ -7,7 +7,7 @@ from click.testing import CliRunner, Result
 
 from cranio_nb.cli.main import main
 
-OUTPUTS = {"prosthesis.stl", "patch.nii.gz", "design.json", "report.html"}
+OUTPUTS = {"prosthesis.stl", "patch.nii.gz", "design.json", "report.html", "manifest.json"}
 
 
 def cranio(*arguments: object) -> Result:

@@ -13,7 +13,7 @@ def test_all_or_nothing(found, tmp_path, monkeypatch):
 
     with staged(tmp_path / "good") as part:
         comparison_folder.write_comparison(found, part)
-    assert {p.name for p in (tmp_path / "good").iterdir()} == set(comparison_folder.FILES)
+    assert {p.name for p in (tmp_path / "good").iterdir()} == {*comparison_folder.FILES, "manifest.json"}
     monkeypatch.setattr(comparison_folder, "comparison_page", full_disk)
     with pytest.raises(CannotWrite), staged(tmp_path / "new" / "out") as part:
         comparison_folder.write_comparison(found, part)

@@ -43,9 +43,9 @@ def test_the_patch_reads_back_as_it_was(made, tmp_path):
 def test_the_paths_are_those_of_the_files(made, without_patch, tmp_path):
     paths = save(made, str(tmp_path / "a" / "b"))
     assert paths == [tmp_path / "a" / "b" / name for name in ("prosthesis.stl", "patch.nii.gz", "design.json")]
-    assert set(paths) == set((tmp_path / "a" / "b").iterdir())
+    assert {*paths, tmp_path / "a" / "b" / "manifest.json"} == set((tmp_path / "a" / "b").iterdir())
     assert [p.name for p in save(without_patch, tmp_path / "c")] == ["prosthesis.stl", "design.json"]
-    assert {p.name for p in (tmp_path / "c").iterdir()} == {"prosthesis.stl", "design.json"}
+    assert {p.name for p in (tmp_path / "c").iterdir()} == {"prosthesis.stl", "design.json", "manifest.json"}
 
 
 def test_with_the_report_the_voxels_are_on_the_scans_own_grid(phantom, tmp_path):
@@ -119,7 +119,7 @@ def test_a_run_saved_by_name_is_what_the_run_writes(phantom, tmp_path):
     design_folder.write_outputs(result, tmp_path / "run")
     save(result.prosthesis, tmp_path / "saved", result.case.load)
     run, saved = digest(tmp_path / "run"), digest(tmp_path / "saved")
-    assert set(run) - set(saved) == {"report.html"}
+    assert set(run) ^ set(saved) == {"report.html", "manifest.json"}
     assert all(run[name] == saved[name] for name in ("prosthesis.stl", "patch.nii.gz"))
     records = [json.loads((tmp_path / name / "design.json").read_text()) for name in ("run", "saved")]
     assert all(records[0][key] == records[1][key] for key in made_record(result.prosthesis))

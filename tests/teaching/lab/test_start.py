@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 
-from cranio_nb.cli import doctor
+from cranio_nb.cli import examination
 from cranio_nb.cli.main import main
 from cranio_nb.errors import InputRefused
 from cranio_nb.teaching.lab import start
@@ -59,6 +59,24 @@ def test_the_settings_are_ones_that_jupyterlab_knows():
             assert set(entries) <= set(json.load(stream)["properties"]), plugin
 
 
+def test_root_is_told_in_words(lessons, monkeypatch):
+    pytest.importorskip("jupyterlab")
+    monkeypatch.setattr(start.os, "geteuid", lambda: 0, raising=False)
+    monkeypatch.setattr(start, "_run_until_signal", lambda command: pytest.fail("it was started"))
+    done = CliRunner().invoke(main, ["lab", str(lessons)])
+    assert done.exit_code == 3 and "--allow-root" in done.stderr and done.stderr.count("\n") == 1
+    monkeypatch.setattr(start, "_run_until_signal", lambda command: 7 if "--allow-root" in command else 1)
+    assert CliRunner().invoke(main, ["lab", str(lessons), "--allow-root"]).exit_code == 7
+
+
+def test_it_listens_on_this_machine_only(lessons, monkeypatch):
+    pytest.importorskip("jupyterlab")
+    seen = []
+    monkeypatch.setattr(start, "_run_until_signal", lambda command: seen.extend(command) or 0)
+    assert start.open_lab(lessons, allow_root=True) == 0
+    assert "--ServerApp.ip=127.0.0.1" in seen and "--ServerApp.allow_remote_access=False" in seen
+
+
 def test_vtk_is_told_to_look_for_no_display(monkeypatch):
     monkeypatch.delenv("VTK_DEFAULT_OPENGL_WINDOW", raising=False)
     assert start.lab_environment()["VTK_DEFAULT_OPENGL_WINDOW"] == "vtkOSOpenGLRenderWindow"
@@ -69,7 +87,7 @@ def test_vtk_is_told_to_look_for_no_display(monkeypatch):
 @pytest.mark.parametrize(("mark", "name"), [("JUPYTERHUB_USER", "JupyterHub"), ("VSCODE_PID", "VS Code")])
 def test_the_doctor_sees_what_stands_before_the_browser(monkeypatch, mark, name):
     monkeypatch.setenv(mark, "1")
-    assert doctor._front_end().found.startswith(name)
+    assert examination._front_end().found.startswith(name)
 
 
 def test_opening_the_lab_is_not_loaded_with_the_command_line():

@@ -1,0 +1,108 @@
+"""The server of the live scenes: for this machine's own browser only, and for those who hold its key.
+
+A server of trame as it comes answers any page that is open in the same browser, and its key is the same everywhere.
+This one listens on the loopback address, has a random key, and refuses what names another host or comes from another
+origin. The key reaches the scene in the address of its frame, which the kernel alone knows.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Callable
+from typing import Any
+
+NAME = "cranio-nb"
+"""Of the server; each kernel has one."""
+HOST = "127.0.0.1"
+"""Address it listens on."""
+_LOCAL = ("127.0.0.1", "localhost")
+_SOCKET = "/ws"
+_FRAMES = " ".join(f"http{s}://{host}:*" for host in _LOCAL for s in ("", "s"))
+HEADERS = {
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Content-Security-Policy": f"frame-ancestors {_FRAMES}",
+}
+"""Of every answer."""
+
+
+def running_server() -> Any:
+    """The server of this kernel, started where it is not running yet.
+
+    Returns
+    -------
+    trame_server.core.Server
+        With its key as ``server.options["key"]``.
+    """
+    from trame_pyvista.jupyter import elegantly_launch
+    from trame_pyvista.widgets import get_server
+
+    server = get_server(NAME)
+    if not server.running:
+        # a key that starts with a letter: the page takes what looks like a number for one
+        server.options["key"] = f"k{secrets.token_urlsafe(32)}"
+        server.cli.set_defaults(authKey=server.options["key"], authKeyFile=None, host=HOST)
+        server.controller.on_server_bind.add(guard)
+        elegantly_launch(server, host=HOST, port=0, wslink_backend="aiohttp")
+    return server
+
+
+def guard(bound: Any) -> None:
+    """Check every request to a server, and mark every answer.
+
+    Parameters
+    ----------
+    bound : wslink.backends.aiohttp.WebAppServer
+        Before it listens.
+    """
+    bound.app.middlewares.append(_checked())
+    bound.app.on_response_prepare.append(_mark)
+
+
+def is_local_request(hosts: list[str], origins: list[str], port: int, *, socket: bool) -> bool:
+    """Whether a request comes from this machine's browser and from a page of this server.
+
+    Parameters
+    ----------
+    hosts, origins : list of str
+        Values of the headers Host and Origin.
+    port : int
+        Of the server.
+    socket : bool
+        Whether a socket is asked for, for which a browser always names the origin.
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> is_local_request(["localhost:8080"], ["http://localhost:8080"], 8080, socket=True)
+    True
+    >>> is_local_request(["localhost:8080"], ["http://elsewhere.org"], 8080, socket=True)
+    False
+    """
+    known = {f"{name}:{port}" for name in _LOCAL}
+    if len(hosts) != 1 or hosts[0] not in known or len(origins) > 1:
+        return False
+    return origins[0] in {f"http://{host}" for host in known} if origins else not socket
+
+
+def _checked() -> Callable[..., Any]:
+    """What refuses a request that is not local, before anything else sees it."""
+    from aiohttp import web
+
+    @web.middleware
+    async def check(request: web.Request, handler: Callable[..., Any]) -> web.StreamResponse:
+        hosts, origins = request.headers.getall("Host", []), request.headers.getall("Origin", [])
+        port = request.transport.get_extra_info("sockname")[1] if request.transport else 0
+        if not is_local_request(hosts, origins, port, socket=request.path == _SOCKET):
+            return web.Response(status=403, text="This scene answers to the notebook that it belongs to.")
+        return await handler(request)
+
+    return check
+
+
+async def _mark(_: Any, response: Any) -> None:
+    """Give an answer the `HEADERS`."""
+    response.headers.update(HEADERS)
