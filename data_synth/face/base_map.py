@@ -63,7 +63,7 @@ def base_map(rng: np.random.Generator) -> BaseMap:
     Parameters
     ----------
     rng : Generator
-        Varies the heights by up to 1.5 mm and the roofs' thickness by a fifth.
+        Varies the heights by 2 or 3 mm and the roofs' thickness by half.
 
     Returns
     -------
@@ -71,7 +71,8 @@ def base_map(rng: np.random.Generator) -> BaseMap:
         Left and right alike.
     """
     x, y = np.meshgrid(*(np.arange(-half, half + _STEP / 2, _STEP) for half in _HALF), indexing="ij")
-    lift, thin = rng.uniform(-1.5, 1.5, 3), rng.uniform(0.85, 1.2)
+    lift = rng.uniform([-0.5, -2.0, -2.0], [3.0, 2.0, 2.0])
+    thin = rng.uniform(0.7, 2.5)
     height = _height(np.abs(x), y, lift)
     slope = np.sqrt(1 + sum(g**2 for g in np.gradient(height, _STEP)))
     return BaseMap(height, height - slope * _thickness(np.abs(x), y, thin), slope)
@@ -84,13 +85,8 @@ def _step(value: Array, width: float) -> Array:
 
 def _height(x: Array, y: Array, lift: Array) -> Array:
     # Front: roofs of the orbits, with the sieve plate sunk between them; it ends at the wing of the sphenoid.
-    front = (
-        -4.0
-        + 5.0 * np.exp(-(((x - 34) / 17) ** 2))
-        - 3.0 * np.exp(-((x / 6) ** 2))
-        + 0.03 * np.maximum(-y - 60, 0)
-        + lift[0]
-    )
+    front = -3.0 + 5.0 * np.exp(-(((x - 34) / 17) ** 2)) - 3.0 * np.exp(-((x / 6) ** 2)) + lift[0]
+    front = front - (0.27 - 0.16 * np.exp(-((x / 8) ** 2))) * np.maximum(y + 80, 0)  # the roofs fall to the back
     front = front + 0.06 * np.maximum(x - 40, 0) ** 1.2
     # Middle: a saddle on the axis, and the deep middle pits beside it.
     saddle = -9.0 - 5.0 * np.exp(-(((y + 17) / 5) ** 2)) + 2.0 * np.exp(-(((y + 6) / 3) ** 2)) + lift[1]
@@ -106,7 +102,12 @@ def _height(x: Array, y: Array, lift: Array) -> Array:
 
 
 def _thickness(x: Array, y: Array, thin: float) -> Array:
-    roof = 1.3 * thin + 2.2 * _step(x - 50, 2.5) + 2.5 * _step(-y - 78, 2.5) + 1.5 * np.exp(-(((y + 32) / 5) ** 2))
-    roof = roof - 0.4 * np.exp(-((x / 5) ** 2))
+    roof = (
+        0.3 * thin * (1 + 0.5 * np.sin(0.31 * x + 1.0) * np.sin(0.27 * y))
+        + 2.2 * _step(x - 50, 2.5)
+        + 2.5 * _step(-y - 78, 2.5)
+        + 1.2 * np.exp(-(((y + 31) / 3) ** 2))
+    )
+    roof = roof - 0.15 * np.exp(-((x / 5) ** 2))
     pits = 2.2 + 2.5 * _step(12 - x, 2.0) + 2.0 * _step(y + 4, 3.0)
     return roof + (pits - roof) * _step(y + 28, 2.0)

@@ -156,14 +156,15 @@ def hollows() -> tuple[Hollow, ...]:
     air = both(
         Ellipsoid((25.0, -59.0, -48.0), (12.5, 18.0, 15.5)),  # maxillary sinus
         Ellipsoid((9.0, -85.0, 7.0), (9.0, 4.2, 9.0)),  # frontal sinus
-        Ellipsoid((6.5, -28.0, -21.0), (6.0, 8.5, 8.0)),  # sphenoid sinus
-        Cells(Box((7.5, -58.0, -18.0), (7.0, 19.0, 9.0), 3.0), 7.0, 0.7),
+        Ellipsoid((6.5, -28.0, -23.0), (6.0, 8.5, 8.0)),  # sphenoid sinus
+        Cells(Box((7.5, -58.0, -20.5), (7.0, 19.0, 9.0), 3.0), 7.0, 0.7),
         Cells(Cone((53.0, 12.0, -34.0), (51.0, 11.0, -55.0), 9.5, 4.0), 5.5, 0.9),
         EAR_CANAL,
         Cone((38.0, 1.0, -29.0), (37.0, -1.0, -25.0), 4.0, 3.5),  # middle ear
     )
     canals = both(
         Cone((22.0, -42.0, -16.0), (17.0, -27.0, -20.0), 3.0, 3.0),  # fissure behind the orbit
+        Cone((24.0, -43.0, -13.0), (27.0, -27.0, -13.0), 2.4, 2.0),
         Cone((17.0, -42.0, -11.0), (10.0, -27.0, -7.0), 2.2, 2.2),  # optic nerve
         Cone((21.0, -14.0, -20.0), (23.0, -13.0, -50.0), 3.0, 3.0),  # oval foramen
         Cone((24.0, 6.0, -24.0), (24.0, 6.0, -60.0), 4.5, 4.5),  # jugular foramen
@@ -176,6 +177,6 @@ def hollows() -> tuple[Hollow, ...]:
         *(Hollow(solid, AIR, 0.8) for solid in air),
         *(Hollow(solid, MARROW) for solid in canals),
         *(Hollow(solid, math.nan) for solid in front),
-        *(Hollow(solid, FAT, 1.1) for solid in both(_ORBIT_WALL)),
+        *(Hollow(solid, FAT, 0.4) for solid in both(_ORBIT_WALL)),
         *(Hollow(solid, FAT) for solid in orbits),
     )  # fmt: skip

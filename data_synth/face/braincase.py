@@ -236,5 +236,6 @@ def braincase(
     mirrored = marks[marks[:, 0] > 0] * [-1, 1, 1, 1, 1, 1]
     mirrored[:, 4:] *= 1 + 0.15 * asymmetry * rng.uniform(-1, 1, (len(mirrored), 1))
     bumps = np.concatenate([marks, mirrored])
-    plain = replace(dome, shape=shape, thickness=thickness)
+    height = np.array([[1.0, 1.0, 1.0], [1.0, 1.0, rng.uniform(0.8, 1.0)]])
+    plain = replace(dome, half_axes=dome.half_axes * height, shape=shape, thickness=thickness)
     return Braincase(**vars(plain), bumps=bumps, rotation=rotation)

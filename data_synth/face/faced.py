@@ -47,6 +47,7 @@ def face_case(
     around: Sequence[str] = (),
     streaks: bool = False,
     noise: float = 12.0,
+    blur_mm: float = 0.5,
     asymmetry: float = 1.0,
 ) -> Case:
     """A head CT with a face, intact or with holes.
@@ -76,6 +77,8 @@ def face_case(
         Whether metal throws streaks.
     noise : float
         Standard deviation of the scanner's noise in HU.
+    blur_mm : float
+        Standard deviation in mm of the scanner's blur within a slice.
     asymmetry : float
         Factor on the difference between left and right; 0 for a head that is its own mirror image.
 
@@ -104,9 +107,18 @@ def face_case(
     affine, count = _grid(head, planes, spacing, grid.shape, reach)
     down = pose.rotation().T @ planes.rotation() @ [0.0, 1.0, 0.0]
     things = devices(around, head, down, np.random.default_rng([seed, 8]), streaks=streaks)
-    hu, bone, implant = render(head, affine, (count, *grid.shape[1:]), devices=things, noise=noise, seed=seed)
+    hu, bone, implant = render(
+        head, affine, (count, *grid.shape[1:]), devices=things, noise=noise, blur_mm=blur_mm, seed=seed
+    )
     parameters = {"size": size, "pose": asdict(pose), "planes": asdict(planes), "slice_mm": float(spacing[0])}
-    parameters |= {"reach": reach, "around": list(around), "streaks": streaks, "noise": noise, "asymmetry": asymmetry}
+    parameters |= {
+        "reach": reach,
+        "around": list(around),
+        "streaks": streaks,
+        "noise": noise,
+        "blur_mm": blur_mm,
+        "asymmetry": asymmetry,
+    }
     found: Landmarks = landmarks(head)
     return Case(hu, affine, bone, implant, name, seed, parameters, head.case, found)
 

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import ndimage
 
 from .anatomy import Anatomy, Depths, Plane, depths, parts
 from .devices import Device
@@ -54,6 +55,7 @@ def render(
     *,
     devices: Sequence[Device] = (),
     noise: float = 12.0,
+    blur_mm: float = 0.0,
     seed: int = 0,
 ) -> tuple[NDArray[np.int16], Mask, Mask]:
     """Scan a head.
@@ -69,6 +71,8 @@ def render(
         What else is in the picture.
     noise : float
         Standard deviation of the scanner's noise in HU.
+    blur_mm : float
+        Standard deviation of the scanner's blur within a slice.
     seed : int
         Of the noise.
 
@@ -91,6 +95,7 @@ def render(
             if share == 0:
                 whole = (level.bone > 0) | (level.tooth > 0)
                 bone[k], implant[k] = whole & (level.cut <= 0), whole & (level.cut > 0)
+        mean = ndimage.gaussian_filter(mean, blur_mm / spacing[1:]) if blur_mm else mean
         mean += noise * rng.standard_normal(shape[1:], dtype=np.float32)
         hu[k] = np.rint(np.clip(mean, -1024, 3071))
     return hu, bone, implant
