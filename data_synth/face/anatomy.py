@@ -22,6 +22,7 @@ from .solids import Solid
 Array = NDArray[np.float64]
 _COARSE = 4  # px between the points at which a plane's shell is looked for
 _ROUND_BONE, _ROUND_SKIN = 4.0, 14.0  # mm over which solids flow into each other
+_SKIN = 2.0  # mm of soft tissue over every bone
 _FORAMEN = (-64.0, -24.0)  # mm: heights between which the great opening of the base is cut
 REACH = 3.0
 """mm around a surface within which depths are exact."""
@@ -197,7 +198,8 @@ def depths(head: Anatomy, plane: Plane) -> Depths:
     tooth, body = np.full(bone.shape, -FAR), outer + head.case.scalp
     _join(tooth, plane, head, head.teeth)
     _join(body, plane, head, head.body, round_mm=_ROUND_SKIN)
-    return Depths(bone, tooth, cavity, body, outer, cut, suture)
+    body = np.maximum(body, np.maximum(bone, tooth) + _SKIN)
+    return Depths(bone, tooth, np.minimum(cavity, -bone), body, outer, cut, suture)
 
 
 def parts(head: Anatomy, plane: Plane, group: Group, *, reach: float = REACH) -> Iterator[tuple[int, Part, Array]]:

@@ -108,6 +108,6 @@ def _thickness(x: Array, y: Array, thin: float) -> Array:
         + 2.5 * _step(-y - 78, 2.5)
         + 1.2 * np.exp(-(((y + 31) / 3) ** 2))
     )
-    roof = roof - 0.15 * np.exp(-((x / 5) ** 2))
+    roof = roof * (1 - 0.3 * np.exp(-((x / 5) ** 2)))
     pits = 2.2 + 2.5 * _step(12 - x, 2.0) + 2.0 * _step(y + 4, 3.0)
     return roof + (pits - roof) * _step(y + 28, 2.0)

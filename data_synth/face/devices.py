@@ -197,7 +197,7 @@ def _couch(head: Anatomy, down: Array, rng: np.random.Generator, streak: float) 
     turn = np.random.default_rng(0).standard_normal((4000, 3))
     d = turn / np.linalg.norm(turn, axis=1, keepdims=True)
     lowest = float((head.case.skin_radius(d) * np.einsum("ni,i->n", d, down)).max())
-    return [Couch(down, lowest + rng.uniform(8, 14))]
+    return [Couch(down, lowest + rng.uniform(3, 6))]
 
 
 def _ring(head: Anatomy, down: Array, rng: np.random.Generator, streak: float) -> list[Device]:

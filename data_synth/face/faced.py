@@ -31,7 +31,6 @@ REACHES = ("vault", "neck")
 _CENTRE = np.array([12.3, -31.6, -803.1])  # world mm: a plain but unsymmetric place
 _MARGIN = 7.0  # mm of air above the scalp
 _LOW = np.array([[0.0, -84.0, -126.0], [40.0, 20.0, -118.0], [-40.0, 20.0, -118.0]])  # head mm: chin and neck
-_NOSE = np.array([[0.0, -116.0, -46.0]])
 
 
 def face_case(
@@ -160,10 +159,9 @@ def _grid(head: Anatomy, planes: Pose, spacing: Array, shape: tuple[int, int, in
     """Affine and number of planes: the braincase in the middle of the image, air above it."""
     assert head.case.rotation is not None
     axes = planes.rotation()[:, ::-1]  # columns: along plane, row, col
-    scalp, low, nose = (spots @ head.case.rotation.T @ axes for spots in (_scalp(head), _LOW, _NOSE))
+    scalp, low = (spots @ head.case.rotation.T @ axes for spots in (_scalp(head), _LOW))
     along = np.concatenate([scalp, low]) if reach == "neck" else scalp
-    across = scalp if reach == "neck" else np.concatenate([scalp, nose])
-    middle = np.array([_middle(along[:, 0]), _middle(across[:, 1]), _middle(across[:, 2])])
+    middle = np.array([_middle(along[:, 0]), _middle(scalp[:, 1]), _middle(scalp[:, 2])])
     count = int(np.ceil((np.ptp(along[:, 0]) + 2 * _MARGIN) / spacing[0])) + 1
     affine = np.eye(4)
     affine[:3, :3] = axes * spacing
