@@ -140,6 +140,18 @@ def tooth_solids() -> tuple[Solid, ...]:
     return both(*rows)
 
 
+def _canals() -> tuple[Solid, ...]:
+    return both(
+        Cone((22.0, -42.0, -16.0), (17.0, -27.0, -20.0), 3.0, 3.0),  # fissure behind the orbit
+        Cone((24.0, -43.0, -13.0), (27.0, -27.0, -13.0), 2.4, 2.0),
+        Cone((17.0, -42.0, -11.0), (10.0, -27.0, -7.0), 2.2, 2.2),  # optic nerve
+        Cone((21.0, -14.0, -20.0), (23.0, -13.0, -50.0), 3.0, 3.0),  # oval foramen
+        Cone((24.0, 6.0, -24.0), (24.0, 6.0, -60.0), 4.5, 4.5),  # jugular foramen
+        Cone((9.0, 4.0, -44.0), (22.0, -6.0, -58.0), 2.5, 2.5),  # nerve of the tongue
+        Cone((10.0, 6.0, -26.0), (27.0, 6.0, -26.0), 2.6, 2.2),  # nerve of the ear
+    )
+
+
 def hollows() -> tuple[Hollow, ...]:
     """Orbits, nose, sinuses, air cells, ear canals and the openings of the base.
 
@@ -162,20 +174,11 @@ def hollows() -> tuple[Hollow, ...]:
         EAR_CANAL,
         Cone((38.0, 1.0, -29.0), (37.0, -1.0, -25.0), 4.0, 3.5),  # middle ear
     )
-    canals = both(
-        Cone((22.0, -42.0, -16.0), (17.0, -27.0, -20.0), 3.0, 3.0),  # fissure behind the orbit
-        Cone((24.0, -43.0, -13.0), (27.0, -27.0, -13.0), 2.4, 2.0),
-        Cone((17.0, -42.0, -11.0), (10.0, -27.0, -7.0), 2.2, 2.2),  # optic nerve
-        Cone((21.0, -14.0, -20.0), (23.0, -13.0, -50.0), 3.0, 3.0),  # oval foramen
-        Cone((24.0, 6.0, -24.0), (24.0, 6.0, -60.0), 4.5, 4.5),  # jugular foramen
-        Cone((9.0, 4.0, -44.0), (22.0, -6.0, -58.0), 2.5, 2.5),  # nerve of the tongue
-        Cone((10.0, 6.0, -26.0), (27.0, 6.0, -26.0), 2.6, 2.2),  # nerve of the ear
-    )
     orbits = both(ORBIT, Cone((34.0, -80.0, -19.0), (38.0, -100.0, -20.0), 18.5, 19.0))
     return (
         *(Hollow(solid, AIR, 1.1) for solid in nose),
         *(Hollow(solid, AIR, 0.8) for solid in air),
-        *(Hollow(solid, MARROW) for solid in canals),
+        *(Hollow(solid, MARROW) for solid in _canals()),
         *(Hollow(solid, math.nan) for solid in front),
         *(Hollow(solid, FAT, 0.4) for solid in both(_ORBIT_WALL)),
         *(Hollow(solid, FAT) for solid in orbits),

@@ -202,11 +202,11 @@ def _couch(head: Anatomy, down: Array, rng: np.random.Generator, streak: float) 
 
 def _ring(head: Anatomy, down: Array, rng: np.random.Generator, streak: float) -> list[Device]:
     low = rng.uniform(-45.0, 25.0)
-    solids: list[Solid] = [Ring((0.0, 3.0, low), 106.0, 4.0, 6.0)]
+    solids: list[Solid] = []  # posts before the ring: streaks start at the first solid met
     for x, y in ((1, 1), (1, -1), (-1, 1), (-1, -1)):
         foot, top = (75.0 * x, 3.0 + 75.0 * y, low), (75.0 * x, 3.0 + 75.0 * y, low + 45.0)
         solids += [Cone(foot, top, 4.5, 4.5), Cone(top, _on(head, np.array(top), 0.5), 2.5, 0.8)]
-    return [Body(Group(tuple(solids)), METAL, streak)]
+    return [Body(Group((*solids, Ring((0.0, 3.0, low), 106.0, 4.0, 6.0))), METAL, streak)]
 
 
 def _staples(head: Anatomy, down: Array, rng: np.random.Generator, streak: float) -> list[Device]:

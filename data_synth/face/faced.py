@@ -95,7 +95,7 @@ def face_case(
     --------
     >>> case = face_case("tiny", 3, holes=2, pose=Pose(nod_deg=20), slice_mm=5.0)
     >>> case.bone.shape, case.defect, case.landmarks.up.round(2)
-    ((36, 128, 128), '2 holes', array([ 0.  , -0.34,  0.94]))
+    ((37, 128, 128), '2 holes', array([ 0.  , -0.34,  0.94]))
     """
     _check(size, slice_mm, reach)
     pose, planes, grid = pose or Pose(), planes or Pose(), SIZES[size]
