@@ -26,7 +26,7 @@ from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES
 from cranio_nb.geometry import voxel_pieces
 from cranio_nb.methods.design import design
 from cranio_nb.opening import Opening
-from cranio_nb.pipeline.run import design_inside
+from cranio_nb.pipeline.run import check_patch
 from cranio_nb.pipeline.trial import contenders
 from cranio_nb.prosthesis import DistanceStats, Prosthesis
 from cranio_nb.readers import read_ct
@@ -63,7 +63,8 @@ def phantom_designs(bone: Volume, openings: tuple[Opening, ...], truth: Prosthes
     """Every method of the catalogue with each of its presets, measured: its name -> what it made."""
     made = {}
     for one in contenders():
-        made[one.name] = design_inside(bone, openings, one.method, one.preset, one.options)
+        made[one.name] = design(bone, openings, method=one.method, preset=one.preset, **one.options)
+        check_patch(made[one.name], openings)
         seen = measure_against(made[one.name], truth, bone)
         print_distances(one.name, seen.table3, f"   {seen.score.dice:.3f}  {seen.score.hd95:5.2f}")
     return made
@@ -134,7 +135,9 @@ def scored(
     """One row: the scores, the share of slices that were not bridged by themselves, the time."""
     began = time.perf_counter()
     try:
-        made = design_inside(bone, opening_search.find_openings(bone), method, preset, options)
+        openings = opening_search.find_openings(bone)
+        made = design(bone, openings, method=method, preset=preset, **options)
+        check_patch(made, openings)
     except CranioError as error:
         return {"name": name, "failed": error.code}
     seconds = time.perf_counter() - began

@@ -62,6 +62,7 @@ class ChordFrame:
         -------
         ChordFrame
         """
+        # along the chord, and across it away from the inside
         chord = ends.points[1] - ends.points[0]
         length = float(np.hypot(*chord))
         along = chord / length
@@ -177,6 +178,7 @@ def resample(points: Points, n: int) -> Points:
     >>> resample(np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 4.0]]), 3)
     array([[0., 0.], [0., 2.], [0., 4.]])
     """
+    # even lengths along the polyline, each coordinate linear in between
     at = arc_length(points)
     even = np.linspace(0, at[-1], n)
     return np.stack([np.interp(even, at, axis) for axis in points.T], axis=1)
@@ -200,6 +202,7 @@ def normals(curves: Points) -> Points:
     >>> normals(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]))[1].tolist()
     [-0.0, 1.0]
     """
+    # tangent by central differences, turned by a quarter
     step = np.gradient(curves, axis=-2)
     normal = np.stack([-step[..., 1], step[..., 0]], axis=-1)
     return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-12)
@@ -227,6 +230,7 @@ def cubic(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> Po
     >>> cubic(8.0, np.pi / 4, 3 * np.pi / 4, 3).round(9) + 0.0
     array([[0., 0.], [4., 2.], [8., 0.]])
     """
+    # eq. (3) with s = x / L: y = L ((t0 + t1) s^3 - (2 t0 + t1) s^2 + t0 s)
     length, t0, t1 = np.broadcast_arrays(np.asarray(length, float), np.tan(theta0), np.tan(theta1))
     s = np.linspace(0, 1, n)
     length, t0, t1 = length[..., None], t0[..., None], t1[..., None]

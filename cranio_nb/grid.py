@@ -61,11 +61,13 @@ def canonical_order(affine: Affine) -> AxisOrder:
     >>> canonical_order(np.diag([-0.5, 0.5, 3.0, 1.0]))  # columns to the right, rows back, planes up
     AxisOrder(axes=(2, 1, 0), flips=(False, False, True))
     """
+    # of the six permutations the one whose axes lie best along z, y, x
     directions = affine[:3, :3] / np.linalg.norm(affine[:3, :3], axis=0)
     best = max(
         ((a, b, c) for a in range(3) for b in range(3) for c in range(3) if {a, b, c} == {0, 1, 2}),
         key=lambda axes: sum(abs(directions[w, a]) for w, a in zip(_WORLD_AXIS, axes, strict=True)),
     )
+    # an axis that runs against its world axis is reversed
     flips = [bool(directions[w, a] < 0) for w, a in zip(_WORLD_AXIS, best, strict=True)]
     return AxisOrder(best, (flips[0], flips[1], flips[2]))
 
@@ -111,6 +113,7 @@ def nearest_values(values: NDArray, index: ArrayLike, *, outside: float) -> NDAr
     >>> nearest_values(np.array([3, 4, 5]), [[0.6], [7.0]], outside=0)
     array([4, 0])
     """
+    # element 0 stands in where there is none, and is replaced at the end
     inside = inside_grid(index, values.shape)
     nearest = (np.rint(i) for i in np.moveaxis(np.asarray(index, float), -1, 0))
     return np.where(inside, values[tuple(np.where(inside, i, 0).astype(np.intp) for i in nearest)], outside)
@@ -138,6 +141,7 @@ def box_around(index: ArrayLike, shape: tuple[int, int, int], margin: ArrayLike 
     >>> box_around([[1.2, 2.0, 3.0], [1.7, 2.0, 4.0]], (9, 9, 5), margin=1)
     (slice(0, 4, None), slice(1, 4, None), slice(2, 5, None))
     """
+    # grown by the margin, clipped to the grid, at least one voxel wide
     index, margin, last = np.asarray(index), np.asarray(margin), np.array(shape) - 1
     low = np.clip(np.floor(index.min(axis=0)).astype(int) - margin, 0, last)
     high = np.clip(np.ceil(index.max(axis=0)).astype(int) + margin, low, last) + 1
@@ -167,6 +171,7 @@ def move_affine(affine: Affine, start: ArrayLike, step: ArrayLike = 1) -> Affine
     >>> move_affine(np.eye(4), (0.5, 0.5, 0.5), 2)[0]
     array([2. , 0. , 0. , 0.5])
     """
+    # origin: world place of the first voxel; columns: the old ones times the step
     moved = affine.copy()
     moved[:3, 3] = np.asarray(start, float) @ affine[:3, :3].T + affine[:3, 3]
     moved[:3, :3] *= np.asarray(step, float)

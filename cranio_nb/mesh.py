@@ -96,6 +96,7 @@ class Mesh:
         ndarray, shape (V, 3)
             Zero for a vertex without a face.
         """
+        # sum of area vectors around each vertex
         corner, shares = self.faces.ravel(), np.repeat(self.area_vectors, 3, axis=0)
         total = np.stack([np.bincount(corner, share, len(self.vertices)) for share in shares.T], axis=1)
         return total / np.linalg.norm(total, axis=1, keepdims=True).clip(1e-12)

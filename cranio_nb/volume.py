@@ -220,6 +220,7 @@ class Volume:
         >>> Volume(mask, np.eye(4)).box(margin=1)
         (slice(1, 4, None), slice(2, 5, None), slice(3, 6, None))
         """
+        # first and last plane, row and column with any true voxel
         hits = [np.flatnonzero(self.voxels.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
         if not len(hits[0]):
             return slice(0, 0), slice(0, 0), slice(0, 0)
@@ -288,8 +289,10 @@ class Volume:
         -------
         Volume
         """
+        # the voxels: axes permuted, then reversed; both are views
         flips = tuple(slice(None, None, -1 if flip else 1) for flip in order.flips)
         voxels = self.voxels.transpose(order.axes)[flips]
+        # the affine: its columns permuted; a reversed axis starts at its last voxel
         columns = self.affine[:3, list(order.axes)]
         last = np.array(voxels.shape) - 1
         affine = np.eye(4)
@@ -319,6 +322,7 @@ def same_grid(a: Volume, b: Volume, tol: float = 0.05) -> bool:
     """
     if a.shape != b.shape:
         return False
+    # affine maps differ most at a corner
     corners = np.array(np.meshgrid(*[(0, n - 1) for n in a.shape])).reshape(3, -1).T
     return bool(np.abs(a.to_world(corners) - b.to_world(corners)).max() <= tol)
 

@@ -156,6 +156,7 @@ class Canvas:
             px of the shaft.
         """
         a, b = np.asarray(start, float), np.asarray(tip, float)
+        # unit vectors along and across the shaft; the head is five widths long
         along = (b - a) / max(float(np.hypot(*(b - a))), 1e-9)
         across = np.array([-along[1], along[0]])
         neck = b - 5 * width * along
@@ -231,6 +232,7 @@ class Canvas:
         entries : sequence of (colour, kind, text)
             The kind is "line", "dash", "dot" or "area".
         """
+        # as wide as the longest text, 18 px for each entry
         font = _font(_SCALE * 12)
         width = max(font.getlength(text) for _, _, text in entries) / _SCALE + 44
         self.area((x, y, width, 18 * len(entries) + 6), WHITE)
@@ -263,6 +265,7 @@ def round_length(longest: float) -> float:
     >>> round_length(37.0), round_length(0.9)
     (20.0, 0.5)
     """
+    # the power of ten below, times 1, 2 or 5
     power = 10.0 ** np.floor(np.log10(longest))
     return float(max(step * power for step in (1, 2, 5) if step * power <= longest))
 

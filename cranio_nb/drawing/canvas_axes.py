@@ -68,6 +68,7 @@ class Chart:
         """
         x, y, width, height = self.area
         values = np.asarray(points, float).reshape(-1, 2)
+        # shares of the axes' lengths; y counts up, the canvas down
         across = (values[:, 0] - self.x[0]) / (self.x[1] - self.x[0])
         low, high, ups = *self._scaled(np.array(self.y)), self._scaled(values[:, 1])
         up = (ups - low) / (high - low)
@@ -111,6 +112,7 @@ class Chart:
             In units of y.
         colour : str
         """
+        # from each count down to the x axis; half a pixel wide at least, to be seen
         base = self.area[1] + self.area[3]
         tops = self.px(np.column_stack([edges[:-1], counts]))
         ends = self.px(np.column_stack([edges[1:], counts]))
@@ -158,6 +160,7 @@ class Chart:
         """Where y has ticks: round values, or powers of ten."""
         if not self.log:
             return _ticks(*self.y)
+        # at most about five powers, evenly apart
         low, high = np.ceil(np.log10(self.y[0])), np.floor(np.log10(self.y[1]))
         return 10.0 ** np.arange(low, high + 1, max(1, (high - low) // 4))
 

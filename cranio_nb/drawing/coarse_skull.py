@@ -57,6 +57,7 @@ def _above(bone: Volume, floor_mm: float) -> Volume:
     box = ndimage.find_objects(bone.voxels.view(np.uint8))
     if not box:
         return bone
+    # heights of the planes' middles: planes may lean, when the gantry was tilted
     planes, rows, cols = box[0]
     middle = [(s.start + s.stop) / 2 for s in (rows, cols)]
     heights = bone.to_world([[k, *middle] for k in range(planes.start, planes.stop)])[:, 2]

@@ -69,6 +69,7 @@ def described(picture: Any, alt: str, line: str) -> Described:
     """
     if not alt.strip() or not line.strip():
         raise InputRefused("NoAlt", "A picture without alternative text or without a line.", "Say what it shows.")
+    # pixels and figures are encoded; matplotlib is loaded for figures only
     if isinstance(picture, np.ndarray):
         picture = encoded_png(picture)
     elif not isinstance(picture, bytes):
@@ -85,10 +86,8 @@ def bundle(picture: bytes, alt: str, line: str) -> Bundle:
     ----------
     picture : bytes
         PNG.
-    alt : str
-        What is to be seen, for those who cannot see it.
-    line : str
-        What stands for the picture where there is only text.
+    alt, line : str
+        As for `described`.
 
     Returns
     -------

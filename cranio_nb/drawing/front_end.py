@@ -62,6 +62,7 @@ def proxy() -> str | None:
     """
     if "google.colab" in sys.modules or "COLAB_RELEASE_TAG" in os.environ:
         return "Colab"
+    # environment variables that each service sets in its kernels
     marks = {
         "JUPYTERHUB_USER": "JupyterHub",
         "BINDER_SERVICE_HOST": "Binder",

@@ -95,7 +95,7 @@ def side_word(direction: ArrayLike) -> str:
     Parameters
     ----------
     direction : array_like, shape (3,)
-        World, LPS; any length.
+        As for `side_letter`.
 
     Returns
     -------

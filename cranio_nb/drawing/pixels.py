@@ -53,6 +53,7 @@ class Window:
         >>> Window.around((0, 0, 200, 100), (10, 10), (20, 20)).cols
         (5.0, 25.0)
         """
+        # the larger extent fixes the zoom; the window is then as large as its box
         low, high = np.asarray(low, float), np.asarray(high, float)
         zoom = min(box[3] / (high[0] - low[0]), box[2] / (high[1] - low[1]))
         middle, half = (low + high) / 2, np.array([box[3], box[2]]) / zoom / 2
@@ -174,5 +175,6 @@ def windowed(hu: NDArray, centre: float, width: float) -> RGB:
     >>> windowed(np.array([[-1000, 40, 1000]]), 40, 80)[0, :, 0].tolist()
     [0, 127, 255]
     """
+    # linear in the window, black and white beyond it
     level = np.clip((hu.astype(np.float32) - (centre - width / 2)) * (255 / width), 0, 255).astype(np.uint8)
     return np.repeat(level[..., None], 3, axis=2)

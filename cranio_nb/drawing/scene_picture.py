@@ -104,6 +104,7 @@ def draw_parts(parts: Sequence[Part], towards: NDArray[np.float64], *, unit: str
 
 def _pixel_mm(parts: Sequence[Part], towards: NDArray[np.float64]) -> float:
     """Size of a pixel at which the scene just fits its picture."""
+    # extent across the line of sight, within the picture less its margins
     flat = np.concatenate([part.mesh.vertices for part in parts]) @ view_axes(towards)[:2].T
     return float((np.ptp(flat, axis=0) / (WIDTH - 40, HEIGHT - 80)).max())
 

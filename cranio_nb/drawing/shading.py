@@ -74,6 +74,7 @@ def view_axes(towards: ArrayLike) -> NDArray[np.float64]:
     >>> (view_axes((0, -1, 0)) + 0.0).tolist()  # from the front: the patient's left is to the right
     [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]]
     """
+    # right-handed with d towards the viewer: right = up x d, down = right x d
     d = np.asarray(towards, float)
     d = d / np.linalg.norm(d)
     right = np.cross(up_in_view(d), d)
@@ -181,6 +182,7 @@ def _scan(
 
 def _shares(n: int) -> NDArray[np.float32]:
     """Weights of the three corners at evenly spread places of a triangle, shape (K, 3)."""
+    # barycentric lattice: i + j + k = n
     i, j = np.mgrid[0 : n + 1, 0 : n + 1]
     keep = i + j <= n
     shares = np.stack([i[keep], j[keep], n - i[keep] - j[keep]], axis=1) / n
@@ -198,6 +200,7 @@ def _lit(colour: NDArray, normal: NDArray) -> NDArray:
 
 def _outlined(rgb: NDArray[np.float32], depth: NDArray[np.float32]) -> NDArray[np.float32]:
     """Darken pixels that lie behind a nearer one: rims and silhouettes."""
+    # how much nearer the nearest neighbour is; the background counts as far behind
     seen = np.where(np.isfinite(depth), depth, np.float32(-1e4))
     behind = np.clip((ndimage.maximum_filter(seen, 3) - seen - _OUTLINE_MM) / 4, 0, 1)
     behind[~np.isfinite(depth)] = np.clip(behind[~np.isfinite(depth)], 0, 0.75)

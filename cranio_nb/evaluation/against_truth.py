@@ -58,7 +58,7 @@ def check_truth(made: Prosthesis, truth: Volume, bone: Volume, head_centre: NDAr
     bone : Volume
         The skull with the hole.
     head_centre : ndarray, shape (3,)
-        World mm of a point inside the cranial cavity; it tells outside from inside.
+        World mm of a point inside the cranial cavity; the outer surface faces away from it.
 
     Returns
     -------
@@ -109,6 +109,7 @@ def measure_against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCh
     """
     if made.patch is None or true.patch is None:
         raise InputRefused("NoPatch", f"The method {made.method} makes no voxels to compare with a mask.")
+    # voxels of both against each other, then meshes side by side
     found = score(made.patch, true.patch, bone)
     return TruthCheck(true, found, side_distances(made, true), table3(made, true, bone))
 
@@ -144,6 +145,7 @@ def table3(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, Distan
     """
     found = {}
     for name, own, other in _both_sides(made, true):
+        # both surfaces in voxels: on an unequal grid mm would weigh the axes otherwise
         nodes = in_voxels(own, bone).vertices
         found[name] = distance_stats(nearest(nodes, in_voxels(other, bone)).distance)
     return found

@@ -53,6 +53,7 @@ def signed_distance(nodes: NDArray[np.float64], other: Mesh) -> NDArray[np.float
     >>> signed_distance(np.array([[1.0, 1, 2], [1, 1, -3]]), triangle)
     array([ 2., -3.])
     """
+    # sign by the angle-weighted normal at the nearest place, which holds at edges and corners too
     found = nearest(nodes, other)
     side = np.einsum("nd,nd->n", nodes - found.places(other), pseudonormals(other, found))
     return np.copysign(found.distance, side)
@@ -155,5 +156,6 @@ def thickness_error(
     nodes, true_nodes = prosthesis.surface(OUTER).vertices, truth.surface(OUTER).vertices
     if not len(nodes) or not len(true_nodes):
         raise InputRefused("EmptyMesh", "A prosthesis without an outer side has no thickness.")
+    # the two meshes share no nodes: the nearest true node stands for the same place
     _, twin = cKDTree(true_nodes).query(nodes)
     return float(np.sqrt(np.square(values - true_values[twin]).mean()))

@@ -56,6 +56,7 @@ def measure_opening(opening: Opening) -> OpeningSize:
     index = np.argwhere(opening.sheet.voxels)
     points = opening.sheet.to_world(index)
     centre = points.mean(axis=0)
+    # unit direction out of the head
     out = (centre - opening.head_centre) / np.linalg.norm(centre - opening.head_centre)
     # extents across its direction, along the principal axes, without the outermost percent
     flat = (points - centre)[::3]
@@ -90,6 +91,7 @@ def name_place(direction: Sequence[float] | np.ndarray) -> str:
     >>> name_place([0.8, -0.5, 0.1])
     'left, front'
     """
+    # a side is named when the direction leads to it by more than 22 degrees: sin 22 = 0.38
     names = (("right", "left"), ("front", "back"), ("base", "top"))
     x, y, z = direction
     words = [pair[int(v > 0)] for pair, v in zip(names, (x, y, z), strict=True) if abs(v) > 0.38]

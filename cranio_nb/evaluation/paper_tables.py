@@ -43,6 +43,7 @@ def balloon_ranges(slices: Sequence[dict[str, Any]]) -> dict[str, dict[str, tupl
     dict
         ``{"outer": {"theta0": (min, max), "theta1": ..., "n_iter": ...}, "inner": ...}``; empty without balloons.
     """
+    # only slices with their own balloons have angles and steps
     own = [s for s in slices if s["status"] == "balloon"]
     if not own:
         return {}
@@ -59,7 +60,7 @@ def count_statuses(slices: Sequence[dict[str, Any]]) -> dict[str, int]:
     Parameters
     ----------
     slices : sequence of dict
-        `Prosthesis.record["slices"]`.
+        As for `balloon_ranges`.
 
     Returns
     -------
@@ -71,6 +72,7 @@ def count_statuses(slices: Sequence[dict[str, Any]]) -> dict[str, int]:
     {'balloon': 0, 'hull': 2, 'carried': 0, 'skipped': 0}
     """
     found = Counter(s["status"] for s in slices)
+    # smallest and largest over the slices; each value is a pair (outer, inner)
     return {status: found[status] for status in STATUSES}
 
 
@@ -80,7 +82,7 @@ def count_not_converged(slices: Sequence[dict[str, Any]]) -> int:
     Parameters
     ----------
     slices : sequence of dict
-        `Prosthesis.record["slices"]`.
+        As for `balloon_ranges`.
 
     Returns
     -------

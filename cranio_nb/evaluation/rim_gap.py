@@ -48,6 +48,7 @@ def rim_gap(rim: Mesh, bone: Volume) -> GapStats:
     """
     if not len(rim.faces):
         raise InputRefused("EmptyMesh", "The prosthesis has no rim; a gap needs one.")
+    # a percentile weighted by area: sorted gaps against the running share of the rim
     gap = distance_to_voxels(rim.centres, bone)
     order = np.argsort(gap)
     share = np.cumsum(rim.areas[order]) / rim.areas.sum()

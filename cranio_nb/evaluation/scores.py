@@ -152,7 +152,7 @@ def volume_ratio(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------
@@ -160,6 +160,7 @@ def volume_ratio(patch: Volume, truth: Volume) -> float:
         1 for two empty masks, inf where only the truth is empty.
     """
     check_same_grid(patch, truth, "patch and truth")
+    # both on one grid: the volume of a voxel cancels
     found, wanted = int(np.count_nonzero(patch.voxels)), int(np.count_nonzero(truth.voxels))
     if wanted == 0:
         return 1.0 if found == 0 else float("inf")
@@ -189,7 +190,7 @@ def hd95(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------
@@ -205,7 +206,7 @@ def assd(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------
@@ -221,7 +222,7 @@ def rmse(patch: Volume, truth: Volume) -> float:
     Parameters
     ----------
     patch, truth : Volume
-        Bool masks (P, R, C) on one grid.
+        As for `dice`.
 
     Returns
     -------
@@ -248,6 +249,7 @@ def surface_distances(patch: Volume, truth: Volume) -> NDArray[np.float64]:
     """
     check_same_grid(patch, truth, "patch and truth")
     box = _box(patch.voxels, truth.voxels)
+    # surface voxels of both in mm, within the box that holds both
     a, b = (v.crop(box).to_world(np.argwhere(_surface(v.voxels[box]))) for v in (patch, truth))
     if not len(a) or not len(b):
         return np.full(len(a) + len(b), np.inf)
@@ -256,6 +258,7 @@ def surface_distances(patch: Volume, truth: Volume) -> NDArray[np.float64]:
 
 def _near_bone(skull: Volume, index: NDArray[np.intp], reach: float) -> NDArray[np.bool_]:
     """Whether each voxel of shape (N, 3) has its centre within `reach` mm of the centre of a bone voxel."""
+    # a bone voxel is its own nearest; others by the distance to the bone's surface
     near = np.zeros(len(index), bool)
     if not len(index):
         return near

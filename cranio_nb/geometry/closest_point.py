@@ -105,6 +105,7 @@ def nearest(points: NDArray[np.float64], mesh: Mesh) -> Nearest:
 
 def _disc_distance(points: NDArray, mesh: Mesh, face: NDArray[np.intp], reach: NDArray) -> NDArray[np.float64]:
     """Distance from each point to the disc around a face: never more than to the face."""
+    # height over the face's plane, and how far aside of the disc; less a rounding's worth
     offset = points - mesh.centres[face]
     height = np.einsum("nd,nd->n", offset, mesh.normals[face])
     aside = np.sqrt(np.maximum(np.einsum("nd,nd->n", offset, offset) - height**2, 0))
@@ -113,6 +114,7 @@ def _disc_distance(points: NDArray, mesh: Mesh, face: NDArray[np.intp], reach: N
 
 def _take_better(best: Nearest, points: NDArray, mesh: Mesh, point: NDArray[np.intp], face: NDArray[np.intp]) -> None:
     """Measure pairs of point and face, and keep for each point what is nearer than its best so far."""
+    # with the point as origin the place is found for all pairs at once
     corners = mesh.corners[face] - points[point][:, None]
     weights = origin_on_triangles(corners)
     distance = np.linalg.norm(np.einsum("nk,nkd->nd", weights, corners), axis=1)
@@ -193,9 +195,11 @@ def pseudonormals(mesh: Mesh, found: Nearest) -> NDArray[np.float64]:
     >>> pseudonormals(triangle, nearest(np.array([[1.0, 1, 2]]), triangle))
     array([[0., 0., 1.]])
     """
+    # on a face its normal; a zero weight puts the place on an edge, two put it on a corner
     normals = mesh.normals.copy()[found.face]
     on_edge = (found.weights <= _ON_EDGE).sum(axis=1) == 1
     on_corner = (found.weights <= _ON_EDGE).sum(axis=1) == 2
+    # edge k lies opposite to corner k, whose weight is zero
     opposite = found.weights[on_edge].argmin(axis=1)
     normals[on_edge] = _edge_normals(mesh)[found.face[on_edge], opposite]
     corner = found.weights[on_corner].argmax(axis=1)
@@ -205,6 +209,7 @@ def pseudonormals(mesh: Mesh, found: Nearest) -> NDArray[np.float64]:
 
 def _edge_normals(mesh: Mesh) -> NDArray[np.float64]:
     """Sum of the unit normals of the faces on each edge, shape (F, 3, 3); edge k lies opposite to corner k."""
+    # both faces of an edge know it by the same two vertices
     edges = np.sort(mesh.faces[:, [[1, 2], [2, 0], [0, 1]]].reshape(-1, 2), axis=1)
     _, edge = np.unique(edges @ np.array([len(mesh.vertices), 1]), return_inverse=True)
     total = np.zeros((edge.max() + 1, 3))
@@ -214,6 +219,7 @@ def _edge_normals(mesh: Mesh) -> NDArray[np.float64]:
 
 def _vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
     """Sum of the unit normals of the faces at each vertex, weighted by their angle there, shape (V, 3)."""
+    # angle between the two edges at each corner: atan2(|a x b|, a b)
     to_next = np.roll(mesh.corners, -1, axis=1) - mesh.corners
     to_last = -np.roll(to_next, 1, axis=1)
     across = np.linalg.norm(np.cross(to_next, to_last), axis=2)

@@ -53,6 +53,7 @@ def label_faces(mesh: Mesh, bone: Volume, head_centre: ArrayLike) -> NDArray[np.
 
 def _touches_bone(mesh: Mesh, bone: Volume) -> NDArray[np.bool_]:
     """Whether a bone voxel lies within 1.5 voxels of each face, in the direction of its normal, shape (F,)."""
+    # a step of at most a voxel along any axis, so that no voxel is passed over
     start, step = bone.to_voxel(mesh.centres), bone.steps(mesh.normals)
     step /= np.abs(step).max(axis=1, keepdims=True).clip(1e-12)
     # rounded first, so that a half falls to the same voxel in every header

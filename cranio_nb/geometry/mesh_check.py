@@ -140,6 +140,7 @@ def wall_thickness(mesh: Mesh) -> NDArray[np.float64]:
         mm from the centre of a face to the centre of the face that best lies near and faces the other way. The
         search weighs a turn of 60 deg away from facing like 30 mm of distance.
     """
+    # place and normal as one point of six numbers: the other side has the opposite normal
     tree = cKDTree(np.hstack([mesh.centres, _FACING * mesh.normals]))
     some = np.arange(0, len(mesh.faces), max(1, -(-len(mesh.faces) // _WALL_SAMPLES)))
     _, other = tree.query(np.hstack([mesh.centres[some], -_FACING * mesh.normals[some]]))
@@ -148,9 +149,11 @@ def wall_thickness(mesh: Mesh) -> NDArray[np.float64]:
 
 def _unclear_faces(mesh: Mesh) -> NDArray[np.bool_]:
     """Faces that are not finite, have no area, or share all corners with an earlier face."""
+    # not finite, or without area
     finite = np.isfinite(mesh.corners).all(axis=(1, 2))
     area = np.zeros(len(mesh.faces))
     area[finite] = Mesh(mesh.vertices, mesh.faces[finite]).areas
+    # the same three corners as an earlier face, in whatever order
     _, first = np.unique(np.sort(mesh.faces, axis=1), axis=0, return_index=True)
     again = np.ones(len(mesh.faces), bool)
     again[first] = False
@@ -187,6 +190,7 @@ def _fans(mesh: Mesh, first: NDArray[np.intp]) -> tuple[int, int]:
     start, end = edge, _next_corner(edge)
     twin_start, twin_end = twin, _next_corner(twin)
     same = mesh.faces.ravel()[start] == mesh.faces.ravel()[twin_start]
+    # links join corners, numbered 3 f + k, at both ends of the edge; twins may run either way
     links = np.concatenate(
         [
             np.stack([start, np.where(same, twin_start, twin_end)], axis=1),

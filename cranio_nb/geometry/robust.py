@@ -140,6 +140,7 @@ def weighted_fit(basis: Array, values: Array, factors: Array, *, ridge: float = 
     array([1., 2.])
     """
     system, target = basis * factors[:, None], values * factors
+    # as further equations: ridge * coefficient = 0
     if ridge:
         n = basis.shape[1]
         system, target = np.concatenate([system, ridge * np.eye(n)]), np.concatenate([target, np.zeros(n)])
@@ -176,6 +177,7 @@ def reweighted_fit(
     >>> mean.round(2)
     array([1.])
     """
+    # fixed-point iteration: fit, residuals, factors
     factors = start
     for _ in range(n_iter):
         coefficients = weighted_fit(basis, values, factors, ridge=ridge)

@@ -35,6 +35,7 @@ def plane_distances(mask: NDArray[np.bool_], bound_px: float) -> NDArray[np.floa
     array([[[-1.,  1.,  2.,  3.,  3.]]])
     """
     out = np.where(mask, bound_px, -bound_px).astype(float)
+    # planes wholly of one kind have no edge: the bound holds there
     for k in np.flatnonzero(mask.any(axis=(1, 2)) & ~mask.all(axis=(1, 2))):
         signed = ndimage.distance_transform_edt(mask[k]) - ndimage.distance_transform_edt(~mask[k])
         out[k] = np.clip(signed, -bound_px, bound_px)

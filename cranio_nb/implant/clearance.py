@@ -41,6 +41,7 @@ def with_clearance(patch: Volume, bone: Volume, *, gap_mm: float) -> Volume:
     box = patch.box(reach + 1)
     steps = np.stack(np.meshgrid(*[np.arange(-r, r + 1) for r in reach], indexing="ij"), axis=-1)
     gap = np.linalg.norm(np.maximum(np.abs(steps) - 1, 0) * bone.spacing, axis=-1)
+    # bone grown by these steps is where the patch must not be
     near = ndimage.binary_dilation(bone.voxels[box], structure=gap < gap_mm - 1e-6)
     kept = np.zeros(patch.shape, bool)
     kept[box] = patch.voxels[box] & ~near

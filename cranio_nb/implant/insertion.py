@@ -36,6 +36,7 @@ def undercut_share(rim: Mesh, axis: NDArray[np.float64], *, tolerance_deg: float
     areas = rim.areas
     if not areas.sum():
         return 0.0
+    # a rim face whose normal points along the way out lies under bone
     lean = rim.normals @ _unit(axis)
     return float(areas[lean > np.sin(np.deg2rad(tolerance_deg))].sum() / areas.sum())
 
@@ -63,6 +64,7 @@ def find_part_to_trim(patch: Volume, bone: Volume, axis: NDArray[np.float64], *,
     stride = bone.spacing.min()
     step = bone.steps(_unit(axis)) * stride
     box = patch.box(np.ceil(np.abs(step) * travel_mm / stride).astype(int) + 2)
+    # a patch voxel is caught if bone, less its surface layer, lies anywhere on its way
     hard = ndimage.binary_erosion(bone.voxels[box])
     here = np.argwhere(patch.voxels[box])
     caught = np.zeros(len(here), bool)
@@ -75,6 +77,7 @@ def find_part_to_trim(patch: Volume, bone: Volume, axis: NDArray[np.float64], *,
 
 def _unit(axis: NDArray[np.float64]) -> NDArray[np.float64]:
     axis = np.asarray(axis, float)
+    # no direction without a length
     length = np.linalg.norm(axis)
     if axis.shape != (3,) or not np.isfinite(length) or length == 0:
         raise InputRefused("BadAxis", f"The axis has shape {axis.shape} and length {length}; give three numbers.")

@@ -154,11 +154,12 @@ def find_method(name: str) -> Method:
     if name in _added:
         return _added[name]
     path = METHODS.get(name)
-    if path is None and name in (offered := _offered()):
-        path = offered[name].value
     if path is None:
-        known = ", ".join(method_names())
-        raise InputRefused("UnknownMethod", f"There is no method named {name!r}.", f"Known are: {known}.")
+        offered = _offered()
+        if name not in offered:
+            known = ", ".join(dict.fromkeys((*METHODS, *offered, *_added)))
+            raise InputRefused("UnknownMethod", f"There is no method named {name!r}.", f"Known are: {known}.")
+        path = offered[name].value
     module = import_module(path)
     return _checked(name, getattr(module, "pieces", None), getattr(module, "PRESETS", {}))
 
@@ -294,29 +295,23 @@ def _place(function: Pieces) -> tuple[str, str]:
     return getattr(function, "__module__", ""), getattr(function, "__qualname__", "")
 
 
-def _checked(name: str, pieces: Any, presets: Any) -> Method:
+def _checked(name: Any, pieces: Any, presets: Any) -> Method:
     """The method, refused where it is none (``BadMethod``)."""
-    problem = _problem(name, pieces, presets)
-    if problem:
-        remedy = "Write it as pieces(bone, openings, *, option=default, ...), which yields a Piece for each opening."
-        raise InputRefused("BadMethod", f"The method {name!r} {problem}.", remedy)
-    return Method(name, pieces, presets)
-
-
-def _problem(name: Any, pieces: Any, presets: Any) -> str:
-    """What keeps a registration from being a method; empty where nothing does."""
-    if not isinstance(name, str) or not name or any(c.isspace() or c == ":" for c in name):
-        return "needs a name that is a word without spaces and colons"
-    if not callable(pieces):
-        return f"is given as {type(pieces).__name__}, and wanted is a function"
-    parameters = list(inspect.signature(pieces).parameters.values())
-    if len(parameters) < 2 or any(p.kind is not p.POSITIONAL_OR_KEYWORD for p in parameters[:2]):
-        return "does not take bone and openings as its first two parameters"
+    parameters = list(inspect.signature(pieces).parameters.values()) if callable(pieces) else []
     loose = [p.name for p in parameters[2:] if p.kind is not p.KEYWORD_ONLY or p.default is p.empty]
-    if loose:
-        return f"has parameters that are no keyword-only options with a default: {', '.join(loose)}"
-    if COMMON.keys() & {p.name for p in parameters}:
-        return f"has an option that `design` gives to every method: {', '.join(COMMON)}"
-    if not isinstance(presets, Mapping) or "default" in presets:
-        return "needs presets as a dict of names other than 'default'"
-    return ""
+    if not isinstance(name, str) or not name or any(c.isspace() or c == ":" for c in name):
+        problem = "needs a name that is a word without spaces and colons"
+    elif not callable(pieces):
+        problem = f"is given as {type(pieces).__name__}, and wanted is a function"
+    elif len(parameters) < 2 or any(p.kind is not p.POSITIONAL_OR_KEYWORD for p in parameters[:2]):
+        problem = "does not take bone and openings as its first two parameters"
+    elif loose:
+        problem = f"has parameters that are no keyword-only options with a default: {', '.join(loose)}"
+    elif COMMON.keys() & {p.name for p in parameters}:
+        problem = f"has an option that `design` gives to every method: {', '.join(COMMON)}"
+    elif not isinstance(presets, Mapping) or "default" in presets:
+        problem = "needs presets as a dict of names other than 'default'"
+    else:
+        return Method(name, pieces, presets)
+    remedy = "Write it as pieces(bone, openings, *, option=default, ...), which yields a Piece for each opening."
+    raise InputRefused("BadMethod", f"The method {name!r} {problem}.", remedy)

@@ -76,6 +76,7 @@ def design(
     """
     check_request(method, preset, options)
     openings = find_openings(bone) if openings is None else openings
+    # what is asked for goes before the preset, and the preset before the defaults
     parameters = default_options(method) | preset_options(method, preset, bone) | options
     own = {name: value for name, value in parameters.items() if name not in COMMON}
     pieces = find_method(method).pieces(bone, openings, **own)
@@ -124,6 +125,7 @@ def assemble(
     report = progress or (lambda stage, done: None)
     began = time.perf_counter()
     report("design", 0.0)
+    # methods are iterators: each opening is reported as it is done
     patch = np.zeros(bone.shape, bool)
     working: list[Any] = []
     records: list[dict[str, Any]] = []
@@ -139,6 +141,7 @@ def assemble(
         message = f"The method {method} could not bridge any part of the opening."
         raise NoOpening("NothingBridged", message, "Try another method or preset.")
     report("surface", _SURFACE)
+    # stage 5 and the sides, from the joined voxels: openings may touch
     solid = bone.with_voxels(patch)
     mesh = surface_reconstruction.extract_surface(solid, smooth=parameters["smooth"])
     sides = face_sides.label_faces(mesh, bone, openings[0].head_centre)

@@ -47,7 +47,7 @@ class HullDesign:
     Parameters
     ----------
     opening : Opening
-    vault : RadiusMap
+    radius_map : RadiusMap
     outer, inner : ndarray, shape (M, M)
         Radii of the two hulls across the hole in mm, nan elsewhere; all nan where slices were used.
     slices : tuple of dict
@@ -55,7 +55,7 @@ class HullDesign:
     """
 
     opening: Opening
-    vault: RadiusMap
+    radius_map: RadiusMap
     outer: NDArray[np.float64]
     inner: NDArray[np.float64]
     slices: tuple[dict[str, Any], ...] = ()
@@ -70,10 +70,8 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) ->
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     axial : bool
         Hulls of the slices along the planes of the scan, as the paper; otherwise hulls in space.
 
@@ -90,28 +88,31 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) ->
 
 def _in_space(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening between the hulls of the vault's two surfaces."""
-    vault = radius_measurement.measure_around(bone, opening)
-    outer, inner = (_hull_radius(vault, radius) for radius in (vault.outer, vault.inner))
-    outer, inner = radius_voxels.thickened(vault, outer=outer, inner=inner)
-    piece = radius_voxels.voxels_between(vault, bone, outer=outer, inner=inner)
-    return HullDesign(opening, vault, outer, inner), voxel_pieces.keep_solid_piece(piece, opening.sheet, bone)
+    radius_map = radius_measurement.measure_around(bone, opening)
+    outer, inner = (_hull_radius(radius_map, radius) for radius in (radius_map.outer, radius_map.inner))
+    outer, inner = radius_voxels.thickened(radius_map, outer=outer, inner=inner)
+    piece = radius_voxels.voxels_between(radius_map, bone, outer=outer, inner=inner)
+    return HullDesign(opening, radius_map, outer, inner), voxel_pieces.keep_solid_piece(piece, opening.sheet, bone)
 
 
-def _hull_radius(vault: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+def _hull_radius(radius_map: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
     """Radius where rays across the hole leave the convex hull of a surface around it, shape (M, M), mm; else nan."""
-    known = np.isfinite(radius) & ~vault.hole
-    directions = vault.grid.directions
+    known = np.isfinite(radius) & ~radius_map.hole
+    directions = radius_map.grid.directions
+    # the hull of the bone around the hole and of the rays' start, which so lies inside
     points = np.concatenate([directions[known] * radius[known][:, None], np.zeros((1, 3))])
     facets = ConvexHull(points).equations  # n x + b <= 0 inside
-    rays = directions[vault.hole]
+    # some hundred rays at a time: the table of rays by facets is large
+    rays = directions[radius_map.hole]
     left = np.concatenate([_leaves(some, facets) for some in np.array_split(rays, 1 + len(rays) // 500)])
     out = np.full(radius.shape, np.nan)
-    out[vault.hole] = left
+    out[radius_map.hole] = left
     return out
 
 
 def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where rays from the origin (n, 3) leave the polyhedron of `facets` (F, 4), shape (n,); nan if at once."""
+    # a ray t d leaves the facet n x + b = 0 at t = -b / (n d); it is inside until the first
     lean = rays @ facets[:, :3].T
     with np.errstate(divide="ignore", invalid="ignore"):
         length = np.where(lean > 1e-9, -facets[:, 3] / lean, np.inf).min(axis=1)
@@ -120,27 +121,31 @@ def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[n
 
 def _by_slices(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:
     """The patch of one opening, slice by slice along the planes of the scan."""
-    vault = radius_measurement.measure_around(bone, opening)
+    radius_map = radius_measurement.measure_around(bone, opening)
+    # two planes more on either side: the sheet of the opening is coarse
     first, end = opening.planes
     px = float(bone.spacing[1:].mean())
+    # 3 mm around the opening: dents elsewhere in a closed ring are not of this hole
     near = ndimage.binary_dilation(opening.sheet.voxels.any(axis=0), iterations=int(np.ceil(3 / px)))
-    cone = _cone(vault, bone)
+    # as in the paper each plane is closed by itself; the cone keeps a plane's hull to this hole
+    cone = _cone(radius_map, bone)
     piece, entries = np.zeros(bone.shape, bool), []
     for plane in range(max(first - 2, 0), min(end + 2, bone.shape[0])):
+        # the cavity's wall in this plane, and which of its points are cut faces of the rim
         hits = _first_bone(bone.voxels[plane], bone.to_voxel(opening.head_centre)[1:])
-        rim = _in_hole(vault, bone.to_world(np.insert(hits, 0, plane, axis=1)))
+        rim = _in_hole(radius_map, bone.to_world(np.insert(hits, 0, plane, axis=1)))
         piece[plane], why = _slice(bone.voxels[plane], cone[plane], hits, rim, near, _ISLAND / px**2)
         entries.append({"plane": plane, "status": "hull" if piece[plane].any() else "skipped", "reason": why})
-    nothing = np.full(vault.hole.shape, np.nan)
-    return HullDesign(opening, vault, nothing, nothing, tuple(entries)), voxel_pieces.keep_solid_piece(
+    nothing = np.full(radius_map.hole.shape, np.nan)
+    return HullDesign(opening, radius_map, nothing, nothing, tuple(entries)), voxel_pieces.keep_solid_piece(
         piece, opening.sheet, bone
     )
 
 
-def _cone(vault: RadiusMap, bone: Volume) -> NDArray[np.bool_]:
+def _cone(radius_map: RadiusMap, bone: Volume) -> NDArray[np.bool_]:
     """Voxels without bone in the directions of the hole, at any depth; beside it only as deep as its rim."""
-    far, deep = (np.where(vault.hole, np.nanmedian(vault.outer) + d, np.nan) for d in (_ABOVE, -_BELOW))
-    return radius_voxels.voxels_between(vault, bone, outer=far, inner=deep)
+    far, deep = (np.where(radius_map.hole, np.nanmedian(radius_map.outer) + d, np.nan) for d in (_ABOVE, -_BELOW))
+    return radius_voxels.voxels_between(radius_map, bone, outer=far, inner=deep)
 
 
 def _slice(
@@ -159,8 +164,10 @@ def _slice(
     nothing = np.zeros_like(bone)
     if not cone.any():
         return nothing, "outside the hole"
+    # every ray meets bone: a partial loss, filled from the outer hull inwards (Fig. 6)
     if len(hits) == _RAYS:
         return prosthesis_volume.fill_partial_loss(bone, min_area_px=min_area, region=near) & cone, "closed ring"
+    # a gap: between the hull of all bone and the hull of the cavity's wall
     hits = hits[~rim]
     if len(hits) < _RAYS / 2:  # their hull may not hold the inside
         return nothing, "no ring of bone in this slice"
@@ -170,9 +177,9 @@ def _slice(
     return nothing, "open ring"
 
 
-def _in_hole(vault: RadiusMap, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+def _in_hole(radius_map: RadiusMap, points: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which world points (n, 3) are seen in the directions of the hole, shape (n,)."""
-    return vault.grid.at(vault.hole, points - vault.grid.centre, outside=False)
+    return radius_map.grid.at(radius_map.hole, points - radius_map.grid.centre, outside=False)
 
 
 def _in_hull(pixels: NDArray, points: NDArray, beyond: float) -> NDArray[np.bool_]:
@@ -180,17 +187,20 @@ def _in_hull(pixels: NDArray, points: NDArray, beyond: float) -> NDArray[np.bool
 
     Bone ends half a pixel beyond the centres of its pixels, and the cavity half a pixel before them.
     """
+    # n x + b <= 0 for all sides; the 1e-6 keeps a tie from hinging on rounding
     sides = ConvexHull(points).equations
     return (pixels @ sides[:, :2].T + sides[:, 2] <= beyond + 1e-6).all(axis=1)
 
 
 def _first_bone(bone: NDArray[np.bool_], inside: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where rays from a point inside a slice first meet bone, slice (row, col), shape (n, 2)."""
+    # samples 1 px apart along each ray, up to half the diagonal of the slice
     angles = np.linspace(0, 2 * np.pi, _RAYS, endpoint=False)
     steps = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     lengths = np.arange(1.0, np.hypot(*bone.shape) / 2)
     points = inside + steps[:, None] * lengths[:, None]
     index = np.rint(np.round(points, 6)).astype(int)  # a half falls the same way in every header
+    # samples beyond the slice count as no bone
     known = ((index >= 0) & (index < bone.shape)).all(axis=-1)
     row, col = np.moveaxis(np.where(known[..., None], index, 0), -1, 0)
     hit = bone[row, col] & known

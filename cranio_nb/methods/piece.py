@@ -20,8 +20,8 @@ class Piece:
     working : tuple
         Intermediate results of the method, for pictures and lessons.
     record : dict
-        JSON-able facts. Lists of dicts tell of parts of this opening and are joined over the openings; anything else
-        tells of the whole design.
+        JSON-able facts. Lists of dicts describe parts of this opening and are joined over the openings; anything else
+        describes the whole design.
 
     Examples
     --------

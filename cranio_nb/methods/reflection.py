@@ -55,7 +55,7 @@ class MirroredDesign:
     ----------
     opening : Opening
     plane : SymmetryPlane
-    own, mirrored : RadiusMap
+    radius_map, mirrored : RadiusMap
         The skull and its mirror image along the same rays; `mirrored.hole` is where the image lacks bone.
     outer, inner : ndarray, shape (M, M)
         Radii of the prosthesis in mm; nan where it has none.
@@ -63,7 +63,7 @@ class MirroredDesign:
 
     opening: Opening
     plane: SymmetryPlane
-    own: RadiusMap
+    radius_map: RadiusMap
     mirrored: RadiusMap
     outer: NDArray[np.float64]
     inner: NDArray[np.float64]
@@ -76,7 +76,7 @@ class MirroredDesign:
         -------
         float
         """
-        return float((self.own.hole & self.mirrored.hole).sum() / self.own.hole.sum())
+        return float((self.radius_map.hole & self.mirrored.hole).sum() / self.radius_map.hole.sum())
 
 
 PRESETS = {"paper": {"fit_rim": False}}
@@ -90,10 +90,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     partial : bool
         Where the other side lacks bone too, leave that part (or that whole opening) open instead of refusing.
     fit_rim : bool
@@ -110,10 +108,12 @@ def pieces(
     InputRefused
         ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
     """
+    # one plane for the whole skull, then each opening mirrored across it
     plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre)
     made = [_mirrored(bone, opening, plane, fit_rim) for opening in openings]
     if not partial:
         _check_whole(made)
+    # with `partial` an opening may stay open, but not all of them
     solids = [_solid(part, bone) for part in made]
     if not any(voxels.any() for voxels in solids):
         raise _missing(made, "no part of it can be copied", "Use a method that needs no symmetry.")
@@ -126,7 +126,7 @@ def _solid(part: MirroredDesign, bone: Volume) -> NDArray[np.bool_]:
     """The voxels between the mirrored radii; none where nothing can be copied."""
     if not np.isfinite(part.outer).any():
         return np.zeros(bone.shape, bool)
-    between = radius_voxels.voxels_between(part.own, bone, outer=part.outer, inner=part.inner)
+    between = radius_voxels.voxels_between(part.radius_map, bone, outer=part.outer, inner=part.inner)
     return voxel_pieces.keep_solid_piece(between, part.opening.sheet, bone)
 
 
@@ -151,52 +151,61 @@ def _missing(made: list[MirroredDesign], why: str, remedy: str) -> InputRefused:
 
 def _mirrored(bone: Volume, opening: Opening, plane: SymmetryPlane, fit_rim: bool) -> MirroredDesign:
     """Radii of the mirror image across one hole, nan where it has none to give."""
-    own = radius_measurement.measure_around(bone, opening)
-    image = radius_measurement.measure_along(own, plane.mirrored(bone))
+    # the mirrored skull on the same rays; where it lacks bone its nearest radius stands in
+    radius_map = radius_measurement.measure_around(bone, opening)
+    image = radius_measurement.measure_along(radius_map, plane.mirrored(bone))
     known = np.isfinite(image.outer) & ~image.hole
     outer, inner = (filled_from_nearest(np.where(known, r, np.nan)) for r in (image.outer, image.inner))
     if fit_rim:
+        # d = r - m is known on the bone: continued across the hole, it makes m meet the rim
         finest = max(_SMOOTH, 2 * float(bone.spacing.max()))
-        outer = outer + _difference(own, np.where(known, own.outer - outer, np.nan), finest)
-        inner = inner + _difference(own, np.where(known, own.inner - inner, np.nan), finest)
-        outer, inner = radius_voxels.thickened(own, outer=outer, inner=inner)
-    made = MirroredDesign(opening, plane, own, image, outer, inner)
-    keep = own.hole
+        outer = outer + _difference(radius_map, np.where(known, radius_map.outer - outer, np.nan), finest)
+        inner = inner + _difference(radius_map, np.where(known, radius_map.inner - inner, np.nan), finest)
+        outer, inner = radius_voxels.thickened(radius_map, outer=outer, inner=inner)
+    made = MirroredDesign(opening, plane, radius_map, image, outer, inner)
+    # what has no mirror image stays open; narrow tips that this leaves would break off
+    keep = radius_map.hole
     if made.lost > _TOLERATED:
-        keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / own.step_mm)))
+        keep = ndimage.binary_opening(keep & ~image.hole, iterations=max(1, round(_TIP / radius_map.step_mm)))
     return replace(made, outer=np.where(keep, outer, np.nan), inner=np.where(keep, inner, np.nan))
 
 
-def _difference(own: RadiusMap, difference: NDArray[np.float64], smooth: float) -> NDArray[np.float64]:
+def _difference(radius_map: RadiusMap, difference: NDArray[np.float64], smooth: float) -> NDArray[np.float64]:
     """What the mirror image lacks to the bone around the hole, continued smoothly across it, shape (M, M), mm.
 
     Waves shorter than `smooth` mm are taken for noise.
     """
-    skip = max(1, round(_COARSE / own.step_mm))
-    step = skip * own.step_mm
-    away = ndimage.distance_transform_edt(~own.hole)[::skip, ::skip] * own.step_mm
+    # d is smooth: a grid of some mm resolves it, and keeps the system small
+    every = max(1, round(_COARSE / radius_map.step_mm))
+    step = every * radius_map.step_mm
+    away = ndimage.distance_transform_edt(~radius_map.hole)[::every, ::every] * radius_map.step_mm
     area = away <= _RING
-    target = difference[::skip, ::skip]
+    target = difference[::every, ::every]
     known = area & (away > 0) & np.isfinite(target)
+    # energy = smooth^4 (L^2 + L / tension^2) per cell: a plate under tension (see the module's text)
     bend = _laplacian(area)
     energy = (smooth / step) ** 4 * (bend @ bend + (step / _TENSION) ** 2 * bend)
+    # Cauchy's weights drop places where the mirror image meets a ridge or a sinus
     data, weight = np.where(known, target, 0.0)[area], known[area].astype(float)
     for _ in range(5):
         solved = splu((energy + sparse.diags_array(weight)).tocsc()).solve(weight * data)
         weight = known[area] / (1 + ((data - solved) / _OUTLIER) ** 2)
+    # back to all rays, linear between the nodes
     coarse = np.full(area.shape, np.nan)
     coarse[area] = solved
-    v, u = np.indices(difference.shape) / skip
+    v, u = np.indices(difference.shape) / every
     return ndimage.map_coordinates(filled_from_nearest(coarse), [v, u], order=1, mode="nearest")
 
 
 def _laplacian(area: NDArray[np.bool_]) -> sparse.csr_array:
     """Graph Laplacian of the points of a grid that lie in an area, each joined to its four neighbours there."""
+    # neighbours along rows and along columns, both in the area
     index = np.cumsum(area).reshape(area.shape) - 1
     pairs = [
         np.stack([index[a][area[a] & area[b]], index[b][area[a] & area[b]]])
         for a, b in ((np.s_[1:], np.s_[:-1]), (np.s_[:, 1:], np.s_[:, :-1]))
     ]
+    # degree minus adjacency
     i, j = np.concatenate(pairs, axis=1)
     n = int(area.sum())
     links = sparse.csr_array((np.ones(len(i)), (i, j)), shape=(n, n))

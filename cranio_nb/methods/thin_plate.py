@@ -1,15 +1,15 @@
 """A thin plate across the hole: bone mask in, pieces out.
 
-Idea: seen from inside the head each surface of the vault is one radius per direction (`chart`). A plate that lies on
-the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
-other side of the skull has bone, radii e that are expected, and D^n all partial derivatives of order n on the chart,
+Idea: seen from inside the head each surface of the vault is one radius per direction (`RadiusMap`). A plate that lies
+on the bone around the hole is bent across it as little as can be. With radii f on the bone, mirrored radii m where the
+other side of the skull has bone, radii e that are expected, and D^n all partial derivatives of order n on the map,
 the radii g = e + h minimise
 
     sum w (g - f)^2 + a^4 |D^2 h|^2 + b^6 |D^3 h|^2 + c^4 sum v |D^2 (g - m)|^2 + s sum |h|^2 .
 
-Without a prior e is one radius for all and s is 0: the plate is a piece of a sphere that is bent. With one, e is what
-intact skulls let expect given this skull's bone, and springs s hold the plate to it in the hole. Near the rim the
-plate is the better informed, in the middle of a wide hole the springs are; where the other side tells of the shape,
+Without a prior e is one radius for all and s is 0: the plate is a piece of a sphere that is bent. With one, e is the
+mean of intact skulls given this skull's bone, and springs s hold the plate to it in the hole. Near the rim the
+plate is the better informed, in the middle of a wide hole the springs are; where the other side shows the shape,
 the plate is stiffer and heeds them less.
 
 The second order pulls smoothed bone towards spheres, the third towards quadrics, so that it carries the rim's
@@ -21,7 +21,7 @@ the hole only their ratios matter. The weights w and v drop bone that does not b
 sinuses (Cauchy's weights, iterated). Each surface is one sparse symmetric system, solved directly.
 
 Source: thin plates in cranioplasty are Carr, Fright and Beatson 1997 (doi 10.1109/42.563663): radial basis functions
-on a depth map, second order, interpolating. Ours are the radial chart, finite differences in place of radial
+on a depth map, second order, interpolating. Ours are the radius map, finite differences in place of radial
 functions, the third order, the smoothing, the robust weights, the inner surface, the mirrored side and the springs.
 """
 
@@ -70,7 +70,7 @@ class Plate:
 
     Parameters
     ----------
-    chart : RadiusMap
+    radius_map : RadiusMap
         The vault around the opening.
     outer, inner : ndarray, shape (M, M)
         Radii of the prosthesis, mm; nan outside the hole.
@@ -80,7 +80,7 @@ class Plate:
         Outer and inner radii that a prior predicts.
     """
 
-    chart: RadiusMap
+    radius_map: RadiusMap
     outer: Array
     inner: Array
     mirrored: tuple[Array, Array] | None
@@ -100,10 +100,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     second_mm, third_mm : float
         The lengths a and b over which bone is smoothed by the second and the third order, mm; 0 for none.
     mirror_mm : float
@@ -122,6 +120,7 @@ def pieces(
     InputRefused
         ``NoPrior`` or ``PriorDoesNotFit``.
     """
+    # one symmetry plane serves all openings: it is the whole skull's
     learned = load_prior(Path(prior)) if prior else None
     plane, found = _symmetry(bone, openings[0]) if mirror_mm else (None, {"unused": "not asked for"})
     record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
@@ -164,18 +163,23 @@ def bend(
     ndarray, shape (M, N)
         The plate in the hole and up to 25 mm around it; nan elsewhere, and everywhere if nothing is known.
     """
+    # the plate covers the hole and a band of bone, which carries curvature into it
     beside = ndimage.distance_transform_edt(~hole) * mm <= _REACH
     out = np.full(values.shape, np.nan)
     known = (np.isfinite(values) & ~hole)[beside]
     if known.sum() < _LEAST_NODES:
         return out
+    # h = g - e: only what departs from what is expected is bent
     base = np.full(values.shape, np.median(values[beside][known])) if expected is None else expected
     data = np.where(known, (values - base)[beside], 0.0)
+    # a^4 |D^2 h|^2 + b^6 |D^3 h|^2, lengths in nodes
     stiffness = _stiffness(beside, 2, second_mm / mm) + _stiffness(beside, 3, third_mm / mm)
     push = np.zeros(len(data))
+    # c^4 v |D^2 (g - m)|^2: a matrix, and a force towards the mirrored curvature
     if like is not None and mirror_mm:
         held, push = _towards((like - base)[beside], beside, mirror_mm / mm)
         stiffness = stiffness + held
+    # springs s to the expected radii, in the hole only: bone needs none
     if expected is not None:
         stiffness = stiffness + sparse.diags_array(_SPRING * hole[beside])
     out[beside] = base[beside] + _settle(stiffness, push, data, known)
@@ -186,9 +190,11 @@ def _settle(stiffness: sparse.csr_array, push: Array, data: Array, known: NDArra
     """The minimum of the energy, with weights that fall with the residuals they leave."""
     weight = known.astype(float)
     for hold in _HOLDS:  # first a stiff plate, which no stray bone can bend
+        # (S + w) g = w f + push, the zero of the energy's slope
         held = (stiffness + sparse.diags_array(hold * weight + _FAINT)).tocsc()
         factors = splu(held, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         g = factors.solve(hold * weight * data + push)
+        # Cauchy's weights at three standard deviations, these from the median
         residual = np.abs(g - data)
         spread = max(1.4826 * float(np.median(residual[known])), _LEAST_SPREAD)
         weight = known / (1 + (residual / (3 * spread)) ** 2)
@@ -197,9 +203,11 @@ def _settle(stiffness: sparse.csr_array, push: Array, data: Array, known: NDArra
 
 def _towards(like: Array, beside: NDArray[np.bool_], length: float) -> tuple[sparse.csr_array, Array]:
     """The energy of second differences unlike those of another map: its matrix and its right-hand side."""
+    # differences that touch an unknown place of the other map are left out
     known = np.isfinite(like)
     differences = _differences(beside, 2)
     differences = differences[abs(differences) @ (~known).astype(float) == 0]
+    # v: where the other side bends sharply (ridge, sinus), its bend is not copied
     wanted = differences @ np.where(known, like, 0.0)
     spread = 1.4826 * float(np.median(np.abs(wanted))) if len(wanted) else 0.0
     weight = length**4 / (1 + (wanted / (4 * spread + 1e-6)) ** 2)
@@ -215,6 +223,7 @@ def _stiffness(beside: NDArray[np.bool_], order: int, length: float) -> sparse.c
 
 def _differences(beside: NDArray[np.bool_], order: int) -> sparse.csr_array:
     """All partial differences of an order that lie within the plate, each by the root of its multiplicity."""
+    # |D^n g|^2 sums over all orders of the axes: the mixed parts count binomially often
     index = np.where(beside, np.cumsum(beside).reshape(beside.shape) - 1, -1)
     parts = [_partial(index, order - i, i) * np.sqrt(comb(order, i)) for i in range(order + 1)]
     return sparse.vstack(parts).tocsr()
@@ -222,10 +231,13 @@ def _differences(beside: NDArray[np.bool_], order: int) -> sparse.csr_array:
 
 def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_array:
     """One partial difference, `down` times along the rows' axis and `across` times along the columns'."""
+    # n-th difference: alternating binomial coefficients
     along_rows, along_cols = ([(-1.0) ** j * comb(n, j) for j in range(n + 1)] for n in (down, across))
     stencil = np.outer(along_rows, along_cols)
+    # only stencils that lie wholly on the plate: its edge is free
     nodes = np.lib.stride_tricks.sliding_window_view(index, stencil.shape).reshape(-1, stencil.size)
     nodes = nodes[(nodes >= 0).all(axis=1)]
+    # one row for each stencil, one column for each node
     rows = np.repeat(np.arange(len(nodes)), stencil.size)
     shape = (len(nodes), int(index.max()) + 1)
     return sparse.csr_array((np.tile(stencil.ravel(), len(nodes)), (rows, nodes.ravel())), shape=shape)
@@ -235,8 +247,10 @@ def _symmetry(bone: Volume, opening: Opening) -> tuple[SymmetryPlane | None, dic
     """The symmetry plane, if there is one, and what to record of it."""
     try:
         plane = symmetry.find_symmetry_plane(bone, opening.head_centre)
+    # a skull with too little of the other side still gets its plate, without that term
     except InputRefused as refused:
         return None, {"unused": refused.message}
+    # a bad plane would press the wrong curvature onto the hole
     if plane.residual > _LOPSIDED:
         return None, plane.record() | {"unused": f"The mirrored skull lies {plane.residual:.1f} mm off the skull."}
     return plane, plane.record()
@@ -246,34 +260,38 @@ def _plate(
     bone: Volume, opening: Opening, plane: SymmetryPlane | None, learned: Prior | None, lengths: dict[str, float]
 ) -> Plate:
     """Both plates of one opening."""
-    vault = radius_measurement.measure_around(bone, opening)
-    mirrored = None if plane is None else _other_side(bone, vault, plane)
-    expected = None if learned is None else _expected(bone, vault, learned)
-    nodes = max(1, round(_NODES / vault.step_mm))
-    hole = thinned(vault.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
-    rim = ndimage.distance_transform_edt(~vault.hole) * vault.step_mm <= _RIM
+    # all that is known of the vault on the rays: bone, its mirror image, the prior's mean
+    radius_map = radius_measurement.measure_around(bone, opening)
+    mirrored = None if plane is None else _other_side(bone, radius_map, plane)
+    expected = None if learned is None else _expected(bone, radius_map, learned)
+    # a coarser grid of nodes for the plate; its hole keeps every node that any missing ray touches
+    nodes = max(1, round(_NODES / radius_map.step_mm))
+    hole = thinned(radius_map.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
+    rim = ndimage.distance_transform_edt(~radius_map.hole) * radius_map.step_mm <= _RIM
     radii = []
-    for i, radius in enumerate((vault.outer, vault.inner)):
+    # each surface by itself
+    for i, radius in enumerate((radius_map.outer, radius_map.inner)):
         known = np.where(rim, np.nan, radius)
         like, likely = (None if maps is None else thinned(maps[i], nodes) for maps in (mirrored, expected))
-        plate = bend(thinned(known, nodes), hole, vault.step_mm * nodes, like=like, expected=likely, **lengths)
-        radii.append(np.where(vault.hole, _refined(plate, nodes, vault.hole.shape), np.nan))
-    return Plate(vault, radii[0], radii[1], mirrored, expected)
+        plate = bend(thinned(known, nodes), hole, radius_map.step_mm * nodes, like=like, expected=likely, **lengths)
+        radii.append(np.where(radius_map.hole, _refined(plate, nodes, radius_map.hole.shape), np.nan))
+    return Plate(radius_map, radii[0], radii[1], mirrored, expected)
 
 
-def _other_side(bone: Volume, vault: RadiusMap, plane: SymmetryPlane) -> tuple[Array, Array]:
-    """Outer and inner radii of the mirrored skull along the chart's rays; nan where it lacks bone."""
-    other = radius_measurement.measure_along(vault, plane.mirrored(bone))
+def _other_side(bone: Volume, radius_map: RadiusMap, plane: SymmetryPlane) -> tuple[Array, Array]:
+    """Outer and inner radii of the mirrored skull along the map's rays; nan where it lacks bone."""
+    other = radius_measurement.measure_along(radius_map, plane.mirrored(bone))
     return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
 
 
-def _expected(bone: Volume, vault: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
+def _expected(bone: Volume, radius_map: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
     """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
-    predicted = predict_around(learned, bone, vault)
-    if not (np.isfinite(predicted.outer) & vault.hole).any():
+    # the prior is known on its coarser rays: blurred over their spacing, it has no facets
+    predicted = predict_around(learned, bone, radius_map)
+    if not (np.isfinite(predicted.outer) & radius_map.hole).any():
         return None
     outer, inner = (
-        ndimage.gaussian_filter(filled_from_nearest(radius), _RAYS_APART / vault.step_mm)
+        ndimage.gaussian_filter(filled_from_nearest(radius), _RAYS_APART / radius_map.step_mm)
         for radius in (predicted.outer, predicted.inner)
     )
     return outer, inner
@@ -283,8 +301,9 @@ def _solid(plate: Plate, opening: Opening, bone: Volume) -> NDArray[np.bool_]:
     """The voxels between both plates; none where bone holds no plate."""
     if not np.isfinite(plate.outer).any():
         return np.zeros(bone.shape, bool)
-    outer, inner = radius_voxels.thickened(plate.chart, outer=plate.outer, inner=plate.inner)
-    between = radius_voxels.voxels_between(plate.chart, bone, outer=outer, inner=inner)
+    # the two plates are independent: where they come too close they are moved apart
+    outer, inner = radius_voxels.thickened(plate.radius_map, outer=plate.outer, inner=plate.inner)
+    between = radius_voxels.voxels_between(plate.radius_map, bone, outer=outer, inner=inner)
     return voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
 
 
@@ -303,10 +322,12 @@ def thinned(values: Array, nodes: int) -> Array:
     ndarray, shape (K, K)
         nan where less than half of the neighbours are known.
     """
+    # mean over the known of n x n neighbours: sum of the known, by their share
     known = np.isfinite(values)
     width = 2 * (nodes // 2) + 1
     share = ndimage.uniform_filter(known.astype(float), width)
     mean = ndimage.uniform_filter(np.where(known, values, 0.0), width) / np.maximum(share, 1e-9)
+    # the map's middle stays a node, so that coarse and fine map share it
     start = (len(values) // 2) % nodes
     return np.where(share > 0.5, mean, np.nan)[start::nodes, start::nodes]
 

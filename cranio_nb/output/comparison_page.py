@@ -39,6 +39,7 @@ def comparison_page(comparison: Comparison) -> str:
     str
         HTML that needs no other file.
     """
+    # pictures need a prosthesis, maps need a reference; without them the template leaves their part out
     openings = [measure_opening(one) for one in comparison.case.openings]
     return page_template("comparison.html").render(
         version=version("cranio-nb"),
@@ -71,6 +72,7 @@ def view_shots(comparison: Comparison, openings: list[OpeningSize]) -> dict[str,
     dict of str to list of Shot
         Name of the view -> its pictures, the truth first.
     """
+    # one skull and two views for all contenders, so that only the prostheses differ
     case = comparison.case
     skull = skull_surface(case.bone, lowest_shown(openings, case.openings[0]))
     shown = {name: made.mesh for name, made in comparison.made.items()}
@@ -101,11 +103,13 @@ def cut_shots(comparison: Comparison) -> list[Shot]:
     """
     case, made = comparison.case, comparison.made
     patches = [p.patch for p in made.values() if p.patch is not None]
+    # cuts along the picture's axes as seen from outside, through the middle of the opening
     largest = case.openings[0]
     right, down, towards = view_axes(largest.direction)
     points = largest.sheet.to_world(np.argwhere(largest.sheet.voxels)) - largest.centre
     shots = []
     for along in (right, down):
+        # wide enough for the opening's extent along this cut
         figure = figures.outlines_figure(
             case.bone,
             case.truth,
@@ -114,6 +118,7 @@ def cut_shots(comparison: Comparison) -> list[Shot]:
             axes=(along, -towards),
             reach_mm=float(np.abs(points @ along).max()) + _AROUND_MM,
         )
+        # what is to be seen, for those who cannot see it
         truth = ", the missing bone light blue" if case.truth is not None else ""
         ends = _ends(along)
         alt = (
@@ -153,6 +158,7 @@ def _distance_shot(
     comparison: Comparison, name: str, side: str, d: NDArray[np.float64], towards: NDArray[np.float64]
 ) -> Shot:
     """Distance map of one side of one contender."""
+    # one scale for all maps: colours of two methods can be compared
     made, top_mm = comparison.made[name], comparison.top
     surface = made.surface(SIDES[side])
     figure = figures.distance_figure(made.mesh, surface, d, towards, top_mm=top_mm, px_mm=_MAP_PX_MM)

@@ -30,6 +30,7 @@ def tables(comparison: Comparison) -> list[dict[str, Any]]:
         For each table its "title", the "keys" of its columns in `MEASURES`, and under "best" the best value of each
         column: the one nearest to the end that is better, where contenders differ as printed; else None.
     """
+    # with a truth the measures against it come first
     parts = {"The implants, and what they cost": [k for k, m in MEASURES.items() if not m.needs_truth]}
     if comparison.case.truth is not None:
         parts = {"Against the truth": [k for k, m in MEASURES.items() if m.needs_truth]} | parts
@@ -42,6 +43,7 @@ def tables(comparison: Comparison) -> list[dict[str, Any]]:
 def _best(comparison: Comparison, key: str) -> float | None:
     """The best value of a column as it is printed; None where no end is better or all are alike."""
     what = MEASURES[key]
+    # rounded as printed: what looks alike is no better
     shown = {round(float(row[key]), what.digits) for row in comparison.rows if np.isfinite(row[key])}
     if not what.best or len(shown) < 2:
         return None

@@ -31,6 +31,7 @@ def report_page(result: RunResult) -> str:
     str
         HTML that needs no other file.
     """
+    # only slice methods record slices; without them their tables are left out
     made = result.prosthesis
     slices = made.record.get("slices", [])
     return page_template("report.html").render(
@@ -66,6 +67,7 @@ def balloon_tables(result: RunResult) -> list[dict[str, Any]]:
         For each table its "title", its "rows" (name, smallest, largest value, then the paper's), and whether it has
         the "paper"'s.
     """
+    # the paper's values stand beside this run's only where its preset was used
     ranges = balloon_ranges(result.prosthesis.record.get("slices", []))
     beside = PAPER_BALLOONS if result.preset == "paper" else {}
     return [
@@ -92,6 +94,7 @@ def distance_table(result: RunResult) -> dict[str, DistanceStats]:
     """
     if result.truth is None:
         return {}
+    # in voxels as the paper gives them, then in mm
     columns: dict[str, DistanceStats] = {}
     for side, stats in result.truth.table3.items():
         columns[f"{side.capitalize()} (voxels)"] = stats

@@ -28,6 +28,7 @@ def view_shots(result: RunResult) -> list[Shot]:
     -------
     list of Shot
     """
+    # one coarse skull for all views, cut off above the face
     skull = skull_surface(result.case.bone, lowest_shown(result.sizes, result.case.openings[0]))
     where = "; ".join(one.place for one in result.sizes)
     shots = []
@@ -54,6 +55,7 @@ def slice_shots(result: RunResult) -> list[Shot]:
         `N_SLICES` in all, two of each opening at least; empty for a method without slices.
     """
     made = result.prosthesis
+    # the first direction of each opening shows how the method works; the others look alike
     skeleton = bool(made.parameters.get("axial", False))
     sliced = [part for part in made.working if isinstance(part, SlicedDesign)]
     first = [next((part for part in sliced if part.opening is one), None) for one in result.case.openings]
@@ -62,6 +64,7 @@ def slice_shots(result: RunResult) -> list[Shot]:
         if part is None:
             continue
         at = f"opening {number_of}, slice" if len(first) > 1 else "slice"
+        # spread over the slices, with one of each status
         for i in pick_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
             s, title = part.slices[i], f"{at} {i + 1} of {len(part.slices)}"
             figure = figures.slice_figure(part, s, result.case.bone, made.patch, skeleton=skeleton)
@@ -84,6 +87,7 @@ def distance_shots(result: RunResult) -> list[Shot]:
     truth, made = result.truth, result.prosthesis
     if truth is None or not truth.distances:
         return []
+    # one scale for both sides, the inner one seen from inside the head
     top_mm, towards = _top_of_scale(truth), np.array(result.sizes[0].direction)
     shots = []
     for side, label, sign in (("outer", OUTER, 1.0), ("inner", INNER, -1.0)):
@@ -107,6 +111,7 @@ def _slice_caption(title: str, s: SliceResult) -> str:
     inflation = s.inflation
     if inflation is None:
         return f"{_capital(title)}: {s.status} ({s.reason.rstrip('.')})."
+    # both balloons with their end angles and steps
     angles = "; ".join(
         f"{side}: θ₀ {inflation.theta0_deg[i]:.0f}°, θ₁ {inflation.theta1_deg[i]:.0f}°, {_steps(inflation.n_iter[i])}"
         + ("" if inflation.converged[i] else ", not at rest")

@@ -79,6 +79,7 @@ def page_template(name: str) -> Template:
     jinja2.Template
         With the filter `num` (see `number`); a name that it is not given is an error.
     """
+    # a forgotten value is an error, and markup in a file's name stays text
     environment = Environment(
         loader=PackageLoader("cranio_nb.output"),
         autoescape=True,
@@ -130,5 +131,6 @@ def lowest_shown(openings: Sequence[OpeningSize], largest: Opening) -> float:
     float
         World z, mm.
     """
+    # the lower of the two: an opening below the face line is still shown
     lowest = min(one.lowest for one in openings)
     return min(float(largest.head_centre[2]) - _BELOW_CENTRE_MM, lowest - _BELOW_OPENING_MM)

@@ -99,7 +99,9 @@ def prepare(
     clock = Clock()
     report("reading", 0.0)
     scan, load = read_ct(path, mask=mask, allow=allow, progress=lambda i, n: report("reading", 0.3 * i / n))
-    known = None if truth is None else read_truth(truth, scan)
+    known = None if truth is None else read_ct(truth, mask=True)[0]
+    if known is not None:
+        check_truth_mask(known, scan)
     clock.lap("read")
     report("bone", 0.3)
     bone = bone_of(scan, threshold)
@@ -148,33 +150,26 @@ def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tup
     return tuple(parts)
 
 
-def read_truth(path: str | PathLike[str], scan: Volume) -> Volume:
-    """Read the mask of the missing bone that belongs to a scan.
+def check_truth_mask(truth: Volume, scan: Volume) -> None:
+    """Refuse a mask of the missing bone that does not belong to a scan.
 
     Parameters
     ----------
-    path : path
-        NIfTI or NRRD file, or DICOM folder.
+    truth : Volume
+        Bool mask.
     scan : Volume
         The scan, on whose grid the mask has to be.
-
-    Returns
-    -------
-    Volume
-        Bool mask.
 
     Raises
     ------
     InputRefused
-        ``GridMismatch`` or ``EmptyMask``, or what reading refuses.
+        ``GridMismatch`` or ``EmptyMask``.
     """
-    truth, _ = read_ct(path, mask=True)
     if not same_grid(scan, truth):
         message = f"The truth has shape {truth.shape}, the scan {scan.shape}, or they lie at different places."
         raise InputRefused("GridMismatch", message, "Give a truth mask on the scan's own grid.")
     if not truth.voxels.any():
         raise InputRefused("EmptyMask", "The truth mask is empty; there is nothing to compare with.")
-    return truth
 
 
 def check_margin(mask: Volume, what: str) -> None:

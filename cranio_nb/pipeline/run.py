@@ -5,7 +5,7 @@ For the command line, notebooks and studies; nothing is written here (see `outpu
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from typing import Any
@@ -128,9 +128,15 @@ def run_design(
     report = progress or (lambda step, done: None)
     case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=report)
     clock = Clock(case.seconds)
-    made = design_inside(
-        case.bone, case.openings, method, preset, options, lambda step, done: report(step, 0.4 + 0.4 * done)
+    made = design(
+        case.bone,
+        case.openings,
+        method=method,
+        preset=preset,
+        progress=lambda step, done: report(step, 0.4 + 0.4 * done),
+        **options,
     )
+    check_patch(made, case.openings)
     clock.lap("design")
     report("measuring", 0.8)
     mesh = check_mesh(made.mesh)
@@ -142,34 +148,31 @@ def run_design(
     return RunResult(case, sizes, preset, made, mesh, rim, check, found, clock.seconds)
 
 
-def design_inside(
-    bone: Volume,
-    openings: tuple[Opening, ...],
-    method: str,
-    preset: str,
-    options: dict[str, Any],
-    progress: Progress | None = None,
-) -> Prosthesis:
-    """`methods.design`, refused where the prosthesis reaches the edge of the image.
+def check_patch(made: Prosthesis, openings: Sequence[Opening]) -> None:
+    """Refuse a patch that touches the border of its grid, and say whether the image or the method is to blame.
 
     Parameters
     ----------
-    bone, openings, method, preset, options, progress
-        As for `methods.design.design`.
-
-    Returns
-    -------
-    Prosthesis
+    made : Prosthesis
+    openings : sequence of Opening
+        Those it closes.
 
     Raises
     ------
     InputRefused
-        ``OpeningLeavesImage`` where the opening lies beside that edge, ``PatchLeavesOpening`` where the patch runs
-        away from the opening; and what `design` refuses.
+        ``OpeningLeavesImage`` where the opening lies beside the border, ``PatchLeavesOpening`` where the patch runs
+        away from the opening.
     """
-    made = design(bone, openings, method=method, preset=preset, progress=progress, **options)
-    _check_patch(made, openings)
-    return made
+    if made.patch is None or not touches_border(made.patch):
+        return
+    away = _farthest(made.patch, openings)
+    if away > _BESIDE:
+        message = (
+            f"The method {made.method} did not bridge the opening: in places its patch runs up to {away:.0f} mm away"
+            " from it, to the edge of the image."
+        )
+        raise InputRefused("PatchLeavesOpening", message, "Use another method or preset.")
+    check_margin(made.patch, "The prosthesis")
 
 
 def parameters_used(result: RunResult) -> dict[str, Any]:
@@ -206,21 +209,7 @@ def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...])
     return tuple(found)
 
 
-def _check_patch(made: Prosthesis, openings: tuple[Opening, ...]) -> None:
-    """Refuse a patch that touches the border of its grid, and say whether the image or the method is to blame."""
-    if made.patch is None or not touches_border(made.patch):
-        return
-    away = _farthest(made.patch, openings)
-    if away > _BESIDE:
-        message = (
-            f"The method {made.method} did not bridge the opening: in places its patch runs up to {away:.0f} mm away"
-            " from it, to the edge of the image."
-        )
-        raise InputRefused("PatchLeavesOpening", message, "Use another method or preset.")
-    check_margin(made.patch, "The prosthesis")
-
-
-def _farthest(patch: Volume, openings: tuple[Opening, ...]) -> float:
+def _farthest(patch: Volume, openings: Sequence[Opening]) -> float:
     """Largest distance of a patch's voxels from the boxes around the openings, mm."""
     index = np.argwhere(patch.voxels)
     distances = []

@@ -21,12 +21,12 @@ import numpy as np
 
 from ..errors import CranioError, InputRefused, NoOpening
 from ..methods.catalogue import find_method, method_names, preset_names
-from ..methods.design import check_request
+from ..methods.design import check_request, design
 from ..methods.transfer import pack_methods, unpack_methods
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..volume import Volume
-from .run import design_inside
+from .run import check_patch
 
 STATUSES = ("done", "refused", "no patch", "broken")
 """How a trial ended: with a prosthesis; with a refusal of the method to serve this input; without anything bridged,
@@ -142,7 +142,8 @@ def attempt(bone: Volume, openings: Sequence[Opening], contender: Contender) -> 
     made, status, code, message = None, "done", "", ""
     began, cpu = time.perf_counter(), time.process_time()
     try:
-        made = design_inside(bone, tuple(openings), contender.method, contender.preset, contender.options)
+        made = design(bone, openings, method=contender.method, preset=contender.preset, **contender.options)
+        check_patch(made, openings)
     except CranioError as error:
         status, code, message = _status(error), error.code, str(error)
     except Exception as error:  # a method's fault is a row of the table, not the end of it

@@ -44,6 +44,7 @@ def mean_head(outlines: Array, directions: Array) -> SkullPoints:
     SkullPoints
         In the head frame.
     """
+    # with the mirror images the mean is symmetric about x = 0; the median heeds no outlier
     both = np.concatenate([outlines, outlines[:, :, mirror_index(directions)]])
     common = np.isfinite(both).mean(axis=0) > 0.5
     outer, inner = (
@@ -75,6 +76,7 @@ def align(skull: SkullPoints, mean: SkullPoints, *, affine: bool = True) -> Head
     matrix, shift, misfit = goal.fit(skull, matrix, shift, 8, affine=False)
     if affine:
         matrix, shift, misfit = goal.fit(skull, matrix, shift, 16, affine=True)
+    # what lays the skull on the mean head, turned round: head -> world
     back = skull.axes @ np.linalg.inv(matrix)
     return HeadFrame(back, skull.centre - back @ shift, misfit)
 
@@ -92,11 +94,13 @@ def centre_frames(frames: list[HeadFrame], skulls: list[SkullPoints]) -> list[He
     -------
     list of HeadFrame
     """
+    # each frame relative to its skull's axes and centre, and the mean of these
     local = [skull.axes.T @ frame.matrix for frame, skull in zip(frames, skulls, strict=True)]
     places = [skull.axes.T @ (frame.origin - skull.centre) for frame, skull in zip(frames, skulls, strict=True)]
     mean, place = np.mean(local, axis=0), np.mean(places, axis=0)
     # without what would leave the plane of symmetry
     mean = (mean + mean * np.outer(MIRROR, MIRROR)) / 2
+    # that mean becomes the identity: the head frame neither turns, grows nor drifts over the rounds
     turned, shift = np.linalg.inv(mean), place * [0.0, 1.0, 1.0]
     return [HeadFrame(f.matrix @ turned, f.origin - f.matrix @ turned @ shift, f.misfit) for f in frames]
 
@@ -137,12 +141,14 @@ class _Goal:
     ) -> tuple[Array, Array, float]:
         """Iterate closest points from matrix, shift; the last value is the misfit in mm."""
         for _ in range(n_iter):
+            # partners on both surfaces, and the distance along their normals (point to plane)
             moved = skull.moved(matrix, shift)
             found = self.outer.pairs(moved.outer), self.inner.pairs(moved.inner)
             points, normals, residual, near = (np.concatenate(part) for part in zip(*found, strict=True))
             # outliers fade, pairs that are far apart do not count
             scale = max(spread(residual), _LEAST_SPREAD_MM)
             weight = geman_mcclure_weights(residual, 2 * scale, times=near)
+            # the step that makes n (A p + t - q) small, added to the map so far
             turn, move = (_affine_step if affine else _similar_step)(points, normals, residual, weight)
             matrix, shift = turn @ matrix, turn @ shift + move
         return matrix, shift, float(np.quantile(np.abs(residual), 0.7))
@@ -150,6 +156,7 @@ class _Goal:
 
 def _affine_step(points: Array, normals: Array, residual: Array, weight: Array) -> tuple[Array, Array]:
     """The small affine map that best takes points (n, 3) along normals to their planes."""
+    # d n (A p + t) / dA_ij = n_i p_j, and / dt = n
     slopes = np.concatenate([(normals[:, :, None] * points[:, None, :]).reshape(-1, 9), normals], axis=1)
     ridge = weight.sum() * np.repeat([1e-3, 1e-6], [9, 3])  # mm2: a thousandth of what a point weighs
     step = _solve(slopes, residual, weight, ridge)
@@ -158,6 +165,7 @@ def _affine_step(points: Array, normals: Array, residual: Array, weight: Array) 
 
 def _similar_step(points: Array, normals: Array, residual: Array, weight: Array) -> tuple[Array, Array]:
     """The same with a rotation, a scale and a shift."""
+    # d / d(turn) = p x n, d / d(log scale) = p n, d / dt = n
     along = np.einsum("ij,ij->i", points, normals)[:, None]
     slopes = np.concatenate([np.cross(points, normals), along, normals], axis=1)
     step = _solve(slopes, residual, weight, np.full(7, 1e-9 * weight.sum()))
@@ -166,6 +174,7 @@ def _similar_step(points: Array, normals: Array, residual: Array, weight: Array)
 
 def _solve(slopes: Array, residual: Array, weight: Array, ridge: Array) -> Array:
     """Weighted least squares, damped."""
+    # normal equations; the ridge keeps directions that no pair fixes at rest
     weighted = slopes * weight[:, None]
     step = np.linalg.solve(slopes.T @ weighted + np.diag(ridge), -weighted.T @ residual)
     return np.asarray(step, float)
@@ -197,6 +206,7 @@ def estimate_normals(points: Array) -> Array:
     ndarray, shape (n, 3)
         Unit vectors, pointing away from the origin, across the nine points nearest to each.
     """
+    # principal axes of each patch: the direction of least spread is its normal
     _, near = cKDTree(points).query(points, 9)
     patches = points[near] - points[near].mean(axis=1, keepdims=True)
     across = np.linalg.svd(patches)[2][:, 2]

@@ -75,6 +75,7 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     InputRefused
         ``PriorDoesNotFit`` when the skull does not lie on the mean head; ``NoVault``.
     """
+    # rays of different skulls can be compared only in the frame of the mean head
     frame = align(sample_surface(bone), prior.mean)
     if frame.misfit > _MISFIT_MM:
         message = f"The skull lies {frame.misfit:.1f} mm off the prior's mean head; {_MISFIT_MM:g} mm is the most."
@@ -83,7 +84,9 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     middle = prior.samples.mean(axis=0)
     radii = measure_vault(bone, frame, middle[0])
     usual = middle + local_median(radii - middle)
-    known = np.where(_untrusted(radii, radius_map, frame, middle), np.nan, without_outliers(radii, usual))
+    hole = _rays_through(radius_map, frame, middle)
+    rims = rays_near(hole, _RIM_MM) | rays_near(rays_without_bone(radii) & ~hole, _FREE_RIM_MM)
+    known = np.where(rims, np.nan, without_outliers(radii, usual))
     # what follows from it, on the rays of the map
     wanted = _rays_beside(radius_map.grid, frame)
     points = frame.to_world(vault_rays()[wanted] * conditional_mean(prior, known, wanted)[..., None])
@@ -91,14 +94,9 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     return Prediction(outer=outer, inner=inner, frame=frame)
 
 
-def _untrusted(radii: Array, radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mask:
-    """Which of the `vault_rays` lead into holes or their rims; `radii` (2, m) of the skull, `middle` of the mean."""
-    hole = _rays_through(radius_map, frame, middle)
-    return rays_near(hole, _RIM_MM) | rays_near(rays_without_bone(radii) & ~hole, _FREE_RIM_MM)
-
-
 def _rays_beside(grid: RayGrid, frame: HeadFrame) -> Mask:
     """Which of the `vault_rays` lie on a map or a little beside it, shape (m,)."""
+    # the map reaches to half its width; a ray counts by its angle with the map's middle
     directions = vault_rays() @ frame.matrix.T
     reach = min(grid.n / 2 * grid.step_rad + _BEYOND_RAD, np.pi)
     wanted: Mask = directions @ grid.axes[2] > np.cos(reach) * np.linalg.norm(directions, axis=1)
@@ -109,6 +107,7 @@ def _rays_through(radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mas
     """Which rays pass through the map's hole, on the outer or the inner side of the mean vault (2, m)."""
     through = np.zeros(len(vault_rays()), bool)
     for radius in middle:
+        # where the mean vault lies on each ray, and whether the map misses bone in that direction
         away = frame.to_world(vault_rays() * radius[:, None]) - radius_map.grid.centre
         through |= radius_map.grid.at(radius_map.hole, away, outside=False)
     return through
@@ -117,6 +116,7 @@ def _rays_through(radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mas
 def _radius_on(grid: RayGrid, frame: HeadFrame, points: Array) -> Array:
     """Radius of a surface given by points (k, 3), world, along the rays of a map, shape (M, M), mm."""
     away = points - grid.centre
+    # scattered points of the surface -> the map's own rays, by a C1 interpolation over triangles
     index = np.indices((grid.n, grid.n)).reshape(2, -1).T
     values = CloughTocher2DInterpolator(grid.locate(away).T, np.linalg.norm(away, axis=1))(index)
     radius = values.reshape(grid.n, grid.n)

@@ -120,6 +120,7 @@ def _lay_together(
 
 def _completed(radii: Array) -> Array:
     """Radius maps (n, 2, m) of intact skulls; where a ray is missing or far off, the offset around it holds."""
+    # what is usual at a ray: the mean head moved by what this skull differs around it
     middle = np.nanmedian(np.concatenate([radii, mirror_radii(radii)]), axis=0)
     usual = np.stack([middle + local_median(one - middle) for one in radii])
     sound = np.stack([without_outliers(one, around) for one, around in zip(radii, usual, strict=True)])

@@ -8,7 +8,7 @@ the mirror images as further skulls, these are samples f_1 .. f_m of a Gaussian 
     K(a, b) = w taper(a, b) sum (f_i(a) - mu(a)) (f_i(b) - mu(b)) / (m - 1)  +  h(a) . h(b)  +  k(a, b),
 
 a and b each being a ray and a side. The taper, exp(-d^2 / 2 L^2) in the chord d between the rays, drops what few
-skulls cannot tell (far-off correlations, Houtekamer and Mitchell 2001, "localisation"), and lifts the rank from m - 1
+skulls cannot show (far-off correlations, Houtekamer and Mitchell 2001, "localisation"), and lifts the rank from m - 1
 to thousands. The twelve h are what small affine maps do to the radii of the mean head: a skull with a hole is not
 laid quite as it would be without. k is a sum of squared exponentials, smooth over long and short ways: what skulls do
 that none of these did. Where nothing was learned it is left alone, and continues the known bone smoothly. The known
@@ -105,12 +105,16 @@ def conditional_mean(prior: Prior, radii: Array, wanted: Mask) -> Array:
     ndarray, shape (2, k)
         Outer and inner radius along the k wanted rays.
     """
+    # spread: factor of the sample covariance; laid: factor of what the affine frame may be off
     samples = prior.samples
     mean = samples.mean(axis=0)
     spread = (samples - mean) * np.sqrt(_SHARE / (len(samples) - 1))
     laid = _LAID_MM * np.stack([_affine_changes(side) for side in mean])
-    # with the known rays near the wanted ones
-    known = np.flatnonzero(_used(np.logical_and(*np.isfinite(radii)), wanted))
+    # of the known rays all near the unknown that is wanted, fewer further away
+    given = np.logical_and(*np.isfinite(radii))
+    away = distance_mm(wanted & ~given)
+    fewer = (away < _FINE_MM) | (coarse_rays(4) & (away < _MIDDLE_MM)) | coarse_rays(3)
+    known = np.flatnonzero(given & fewer)
     at = np.flatnonzero(wanted)
     if not len(known):
         return mean[:, at]
@@ -128,6 +132,7 @@ def _covariance(spread: Array, laid: Array, a: NDArray[np.intp], b: NDArray[np.i
     `spread` (2 n, 2, m) holds the samples about their mean, scaled, `laid` (2, m, 12) the h.
     """
     rays = vault_rays()
+    # chord between two rays: |a - b|^2 = 2 - 2 a b
     squared = np.maximum(2 - 2 * rays[a] @ rays[b].T, 0) * RADIUS_MM**2
     # taper and k depend on the chord d between the rays alone
     taper = np.exp(squared / (-2 * _TAPER_MM**2))
@@ -147,13 +152,8 @@ def _affine_changes(radius: Array) -> Array:
     """
     points = vault_rays() * radius[:, None]
     normals = estimate_normals(points)
-    facing = np.maximum(np.einsum("ij,ij->i", normals, vault_rays()), 0.3)  # a ray that grazes the base tells nothing
+    facing = np.maximum(np.einsum("ij,ij->i", normals, vault_rays()), 0.3)  # a ray that grazes the base gives no radius
+    # n / (n d) for a shift, and times p for a turn or stretch by 1 mm at the vault
     normals = normals / facing[:, None]
     turned = normals[:, :, None] * (points / RADIUS_MM)[:, None, :]
     return np.concatenate([normals, turned.reshape(-1, 9)], axis=1)
-
-
-def _used(known: Mask, wanted: Mask) -> Mask:
-    """The known rays that are used: all near the unknown that is wanted, fewer further away."""
-    away = distance_mm(wanted & ~known)
-    return known & ((away < _FINE_MM) | (coarse_rays(4) & (away < _MIDDLE_MM)) | coarse_rays(3))

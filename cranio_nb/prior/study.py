@@ -61,6 +61,7 @@ def list_scans(folder: Path) -> list[Path]:
     """
     if not folder.is_dir():
         raise InputRefused("NoScans", "There is no such folder of scans.", "Give a folder with one scan of each head.")
+    # by name, so that every run takes the scans in one order; hidden files are no scans
     found = [p for p in sorted(folder.iterdir()) if p.is_dir() or p.name.lower().endswith(_FILES)]
     found = [p for p in found if not p.name.startswith(".")]
     if not found:
@@ -132,6 +133,7 @@ def measure_learning_curve(
     One hole of 70 mm a skull, at four places in turn. The skull that is left out had its part in the mean head on which
     all were laid, and lies on it as the intact skull does: the error on new skulls with real holes is a little larger.
     """
+    # learn from some of the others, predict the one left out
     n = len(prior.radii)
     counts = sorted({size for size in sizes if size < n - 1} | {n - 1})
     rows = []
@@ -151,6 +153,7 @@ def measure_learning_curve(
 
 def _error(prior: Prior, truth: NDArray[np.float64], place: NDArray[np.float64]) -> NDArray[np.float64]:
     """Mean absolute error of the outer and the inner radius in a round hole, shape (2,)."""
+    # a cap of the vault is taken away, with a ring beside it as if its rim were bevelled
     away = np.arccos(np.clip(vault_rays() @ place / np.linalg.norm(place), -1, 1))
     hole = away < _HALF_RAD
     known = np.where(away < _HALF_RAD + _BESIDE_RAD, np.nan, truth)

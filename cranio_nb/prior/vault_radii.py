@@ -40,6 +40,7 @@ def vault_rays() -> Array:
     >>> vault_rays().shape
     (6437, 3)
     """
+    # of a sphere of directions those above the skull base
     rays = even_directions(5)
     rays = rays[rays[:, 2] > np.cos(np.radians(VAULT_DEG))]
     rays.setflags(write=False)
@@ -77,6 +78,7 @@ def measure_vault(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
         Outer and inner radius, mm of the mean head; nan where a ray meets no bone.
     """
     rays = vault_rays()
+    # a ray of the head frame in the world, and its length there: radii in mm of the mean head
     stretch = frame.stretch(rays)
     directions = rays @ frame.matrix.T / stretch[:, None]
     outer, inner = surface_radii(bone, frame.origin, directions, middle * stretch)
@@ -96,6 +98,7 @@ def interpolate_radius(points: Array) -> Array:
     ndarray, shape (m,)
         Mean over the four nearest directions, weighted by the inverse square of their chord.
     """
+    # the surface as one radius per direction, then the directions nearest to each ray
     radius = np.linalg.norm(points, axis=1)
     apart, at = cKDTree(points / radius[:, None]).query(vault_rays(), 4)
     weight = 1 / (apart + 1e-3) ** 2
@@ -135,6 +138,7 @@ def local_median(values: Array) -> Array:
     ndarray, shape (2, m)
         0 where all are nan.
     """
+    # rays without any known neighbour get 0: no offset from the mean head
     around = values[:, _neighbours(13)]
     return np.nanmedian(np.where(np.isnan(around).all(axis=-1, keepdims=True), 0.0, around), axis=-1)
 
@@ -151,6 +155,7 @@ def rays_without_bone(radii: Array) -> Mask:
     -------
     ndarray of bool, shape (m,)
     """
+    # a suture lets single rays through, an opening a whole neighbourhood
     free = np.isnan(radii[0])
     return free & (free[_neighbours(7)].mean(axis=1) > 0.5)
 

@@ -26,6 +26,7 @@ from ..errors import CranioError
 PAPER_SKIP_PX = 10.0
 """Boundary left out at each end of the skeleton, px (the paper, section 2: "typically 10 points")."""
 
+_FULL_DEPTH = 0.8  # part of the depth of the bone behind, from which a spine is out of the corners of the cut
 _EIGHT = np.ones((3, 3))  # pixels that share a corner are neighbours
 
 
@@ -77,9 +78,13 @@ def extract_features(bone: NDArray[np.bool_], *, min_part: float = 0.03) -> Slic
     # boundary B: bone with a pixel beside it that is none
     boundary = np.argwhere(bone & ~ndimage.binary_erosion(padded)[1:-1, 1:-1])
 
-    # skeleton, and in each of its parts the spine
+    # skeleton, and in each of its parts the spine, longest first; parts of up to 3 pixels have none
     thin = skeletonize(padded)[1:-1, 1:-1]
-    spines = _spines(thin, depth=ndimage.distance_transform_edt(padded)[1:-1, 1:-1])
+    depth = ndimage.distance_transform_edt(padded)[1:-1, 1:-1]
+    labels, n_parts = ndimage.label(thin, _EIGHT)
+    paths = [find_longest_path(np.argwhere(labels == part)) for part in range(1, n_parts + 1)]
+    trimmed = [_without_forks(path, depth) for path in paths]
+    spines = tuple(sorted((spine for spine in trimmed if len(spine) > 3), key=len, reverse=True))
 
     # convex hull S of the skeleton; a straight line has none
     points = np.argwhere(thin)
@@ -241,25 +246,17 @@ def fit_line(points: Points) -> tuple[Points, Points]:
     return centre, np.linalg.svd(points - centre, full_matrices=False)[2][0]
 
 
-def _spines(thin: NDArray[np.bool_], depth: NDArray[np.float64]) -> tuple[Points, ...]:
-    """The spine of each part of a skeleton, longest first; parts of up to 3 pixels have none."""
-    labels, n_parts = ndimage.label(thin, _EIGHT)
-    paths = (find_longest_path(np.argwhere(labels == part)) for part in range(1, n_parts + 1))
-    spines = (_without_forks(path, depth) for path in paths)
-    return tuple(sorted((s for s in spines if len(s) > 3), key=len, reverse=True))
-
-
 def _without_forks(spine: Points, depth: NDArray[np.float64]) -> Points:
     """The spine without its ends in the corners of the cut, where it lies shallower than in the bone behind."""
     along = depth[tuple(spine.astype(np.intp).T)]
-    return spine[_fork_length(along) : len(spine) - _fork_length(along[::-1])]
-
-
-def _fork_length(depth: NDArray[np.float64], full: float = 0.8) -> int:
-    """Points from the start of a spine to where it has `full` of the depth behind, within two bone thicknesses."""
-    longest = round(4 * np.median(depth))  # the depth of a spine is half the bone's thickness
-    deep = depth[:longest] >= full * np.median(depth[longest : 3 * longest]) if len(depth) > longest else [True]
-    return int(np.argmax(deep))
+    # a fork is no longer than two bone thicknesses; the depth of a spine is half of one
+    longest = round(4 * np.median(along))
+    if len(along) <= longest:
+        return spine
+    # at either end, the first point as deep as nearly all bone behind
+    deep = [way[:longest] >= _FULL_DEPTH * np.median(way[longest : 3 * longest]) for way in (along, along[::-1])]
+    first, last = (int(np.argmax(one)) for one in deep)
+    return spine[first : len(spine) - last]
 
 
 def _ends_on(boundary: Points, spines: tuple[Points, Points], *, skip_px: float, reach_px: float) -> GapEnds:

@@ -41,6 +41,7 @@ def pixels_between(outer: Points, inner: Points, shape: tuple[int, int]) -> NDAr
     >>> int(pixels_between(outer, inner, (8, 12)).sum())
     40
     """
+    # one polygon, out along the outer curve and back along the inner one
     outline = np.concatenate([outer, inner[::-1]])
     region = np.zeros(shape, bool)
     region[polygon(outline[:, 0], outline[:, 1], shape)] = True
@@ -83,11 +84,13 @@ def fill_gap(outer: Points, inner: Points, bone: NDArray[np.bool_]) -> NDArray[n
     >>> int(fill_gap(outer, inner, bone).sum())
     56
     """
+    # between the curves and off the bone
     region = pixels_between(outer, inner, (bone.shape[0], bone.shape[1])) & ~bone
     region = ndimage.binary_opening(region)  # no slivers
     labels, n_parts = ndimage.label(region, _EIGHT)
     if n_parts <= 1:
         return region
+    # pieces that both curves pass: the others lie beside the gap
     keep = np.intersect1d(_labels_along(outer, labels), _labels_along(inner, labels))
     return np.isin(labels, keep[keep > 0])
 
@@ -141,6 +144,7 @@ def fill_partial_loss(
 
 def _labels_along(curve: Points, labels: NDArray) -> NDArray:
     """Labels that lie within a pixel of a curve."""
+    # the curve's points and midpoints, and the pixels around each
     dense = np.concatenate([curve, (curve[1:] + curve[:-1]) / 2])
     near = np.rint(dense[:, None] + _CROSS).astype(int).reshape(-1, 2)
     near = near[((near >= 0) & (near < labels.shape)).all(axis=1)]

@@ -91,7 +91,13 @@ def extract_surface(patch: Volume, *, smooth: bool = True, n_steps: int = 24) ->
 
     vertices, faces = _march_cubes(np.where(inside, 1.0, -1.0))
     if smooth:
-        vertices = _smoothed(vertices, faces, inside, part, n_steps)
+        raw = vertices
+        # between the voxels by signed distance; the signs alone fix the faces
+        start, same_faces = _march_cubes(_distance_field(inside, part))
+        assert np.array_equal(faces, same_faces)
+        # least bending at the same volume; where the patch is thin the surface may now cross itself
+        relaxed = _keep_volume(_relax(start, raw, faces, n_steps), raw, faces, part)
+        vertices = _untangled(relaxed, start, faces, _thin(inside)[tuple(np.rint(raw).astype(int).T)])
     mesh = Mesh(part.to_world(vertices - 1), faces)
     return mesh if mesh.volume > 0 else Mesh(mesh.vertices, faces[:, ::-1].copy())
 
@@ -126,19 +132,9 @@ def _march_cubes(field: NDArray) -> tuple[NDArray[np.float64], NDArray[np.intp]]
     return vertices.astype(float), faces.astype(np.intp)
 
 
-def _smoothed(raw: NDArray, faces: NDArray[np.intp], inside: NDArray[np.bool_], grid: Volume, n_steps: int) -> NDArray:
-    """Smooth vertices in index coordinates, each within half a voxel of its raw place."""
-    # between the voxels by signed distance
-    start, same_faces = _march_cubes(_distance_field(inside, grid))
-    assert np.array_equal(faces, same_faces)  # the signs alone fix the faces
-
-    # least bending at the same volume; where the patch is thin the surface may now cross itself
-    relaxed = _keep_volume(_relax(start, raw, faces, n_steps), raw, faces, grid)
-    return _untangled(relaxed, start, faces, _thin(inside)[tuple(np.rint(raw).astype(int).T)])
-
-
 def _distance_field(inside: NDArray[np.bool_], grid: Volume) -> NDArray[np.float64]:
     """Signed distance in mm to the nearest voxel of the other kind, at the voxels next to the surface; else +-1."""
+    # only voxels next to the surface decide where it passes
     inner = inside & ~ndimage.binary_erosion(inside)
     outer = ~inside & ndimage.binary_dilation(inside)
     place_in, place_out = grid.to_world(np.argwhere(inner)), grid.to_world(np.argwhere(outer))
@@ -198,6 +194,7 @@ def _thin(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
     Only there can the surface pass through itself within the boxes of half a voxel.
     """
+    # what a cube of 2 voxels does not fit into, in the patch and in the space around it
     cube = np.ones((2, 2, 2), bool)
     wide = np.pad(inside, 2)
     thin = wide & ~ndimage.binary_opening(wide, cube) | ~wide & ~ndimage.binary_opening(~wide, cube)
@@ -209,6 +206,7 @@ def _untangled(x: NDArray, start: NDArray, faces: NDArray[np.intp], thin: NDArra
     x = x.copy()
     watched = faces[thin[faces].any(axis=1)]
     for _ in range(_UNTANGLE_STEPS):
+        # bad faces and all faces that share a vertex with them go back
         part = Mesh(x, watched)
         bad = np.union1d(crossings(part), np.flatnonzero(part.areas < _SLIVER))
         if not len(bad):

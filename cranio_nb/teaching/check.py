@@ -114,6 +114,7 @@ def _judge(task: Exercise, answer: Any, cases: list[tuple[Any, ...]]) -> tuple[i
 
 def _say(task: Exercise, cases: list[tuple[Any, ...]], found: list[Any], errors: list[float]) -> str:
     """The sentence: praise, the typical mistake that gives just these answers, or how far off they are."""
+    # right; else a known mistake that gives the same answers; else the distance
     worst = max(errors)
     if worst <= task.tolerance:
         return f"Right: {task.praise}"

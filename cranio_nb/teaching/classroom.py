@@ -88,6 +88,7 @@ class LessonCase:
         return tuple(gap.angles for gap in self._widest(plane))
 
     def _widest(self, plane: int) -> tuple[Gap, ...]:
+        # gaps that both boundaries have, and of these the one with the longest outer chord
         truths = self.phantom.slice_truth(plane) if self.phantom else ()
         gaps = [(t.outer, t.inner) for t in truths if t.outer and t.inner]
         return max(gaps, key=lambda pair: pair[0].chord, default=())
@@ -130,6 +131,7 @@ def load(
     ValueError
         If there is no such size or defect.
     """
+    # the environment goes before the lesson's own arguments: a course can give all lessons one scan
     path, known = os.environ.get("CRANIO_NB_SCAN") or scan, os.environ.get("CRANIO_NB_TRUTH") or truth
     if path and needs_truth and not known:
         raise InputRefused(
@@ -139,10 +141,13 @@ def load(
             "or unset CRANIO_NB_SCAN.",
         )
     if path:
-        from ..pipeline.preparation import read_truth
+        from ..pipeline.preparation import check_truth_mask
 
         ct = read_ct(path)[0]
-        return LessonCase(ct, read_truth(known, ct) if known else None, None)
+        mask = read_ct(known, mask=True)[0] if known else None
+        if mask is not None:
+            check_truth_mask(mask, ct)
+        return LessonCase(ct, mask, None)
     return synthetic(os.environ.get("CRANIO_NB_SIZE") or size, defect, seed)
 
 
@@ -215,6 +220,7 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: f
     InputRefused
         ``NoAxialGap`` where no plane has both, as for a hole at the very top of the head.
     """
+    # from the middle plane outwards until the stage finds both ends
     first, end = opening.planes
     for plane in sorted(range(first, end), key=lambda p: abs(p - (first + end) // 2)):
         with suppress(feature_extraction.SliceProblem):

@@ -74,6 +74,7 @@ def axes(n: int = 1, *, height: float = 3.4, width: float = 9.0) -> tuple[Figure
     >>> figure.get_size_inches().tolist()
     [9.0, 3.4]
     """
+    # without pyplot: no global state, no window
     figure, _ = figures.new_figure(width, height)
     figure.clear()
     figure.set_layout_engine("constrained")
@@ -191,6 +192,7 @@ def zoom(ax: Axes, points: Iterable[ArrayLike], *, px: float, margin: float = 15
     margin : float
         Shown around the points, mm.
     """
+    # rows run down: the lower limit of y is the larger one
     every = np.concatenate([np.asarray(p, float).reshape(-1, 2) for p in points]) * px
     (top, left), (bottom, right) = every.min(axis=0) - margin, every.max(axis=0) + margin
     ax.set(xlim=(left, right), ylim=(bottom, top))

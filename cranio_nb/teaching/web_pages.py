@@ -52,10 +52,12 @@ def write_pages(folder: Path, out: Path) -> list[Path]:
     notebooks = sorted(folder.glob("*.ipynb"))
     if not notebooks:
         raise InputRefused("NoLessons", f"There are no notebooks in {folder.name}.", "Name the folder of the lessons.")
+    # the template gives every picture its alternative text and its line as caption
     exporter = HTMLExporter(
         extra_loaders=[DictLoader({"described.html.j2": _PICTURE})], template_file="described.html.j2"
     )
     pages = {path.stem: exporter.from_notebook_node(nbformat.read(path, as_version=4))[0] for path in notebooks}
+    # written only when all pages are made, and together
     with staged(out) as part:
         for name, text in pages.items():
             (part / f"{name}.html").write_text(text, encoding="utf-8")

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 COMPARED_RAD = np.radians(105.0)
 """Angle from the top of the head down to which the surface is measured."""
 _STEP_RAD = np.radians(2.0)  # between rays: 2.6 mm on the vault
-_RIM = 2  # rays beside a hole that are left out: its edge is bevelled or worn
+_RIM = 2  # rays beside a hole that are left out: its edge is bevelled or thinned
 _STRIDE_MM, _HALVINGS = 0.75, 20  # between samples of a ray; the edge between two is found to 1e-6 mm
 _HALF = 0.5 - 1e-6  # of a blended mask is bone; so a ray midway between bone and none is in bone despite rounding
 

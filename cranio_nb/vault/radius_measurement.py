@@ -19,9 +19,9 @@ from .ray_grid import RadiusMap, RayGrid
 _STEP_DEG = 0.5  # between rays: 0.65 mm on the vault
 _BESIDE_DEG = 42.0  # of vault measured beside the hole
 _LARGEST_DEG = 115.0  # from the map's middle: further out the map tears
-_SOUND = 0.85  # of the usual thickness: bone below it is a bevelled or worn rim
+_SOUND = 0.85  # of the usual thickness: bone below it is a bevelled or thinned rim
 _RIM_MM = 6.0  # beside a hole up to which bone may be its rim
-_AROUND_MM = 20.0  # of bone beside the rim that tells what is usual
+_AROUND_MM = 20.0  # of bone beside the rim that gives the usual thickness
 
 
 def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
@@ -36,7 +36,7 @@ def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
     Returns
     -------
     RadiusMap
-        Centred on the opening, reaching about 55 mm beyond it. Its hole is the opening with its bevelled or worn rim.
+        Centred on the opening, to about 55 mm beyond it. Its hole is the opening with its bevelled or thinned rim.
     """
     # a grid that reaches beyond the opening on all sides
     axes = _axes(opening, bone)
@@ -109,7 +109,7 @@ def _radii(
 
 
 def _missing(thickness: NDArray[np.float64], opening: NDArray[np.bool_], step_mm: float) -> NDArray[np.bool_]:
-    """The hole: rays of an opening without bone, and the bevelled or worn rim beside them."""
+    """The hole: rays of an opening without bone, and the bevelled or thinned rim beside them."""
     # no bone at all, but for the sutures beside it
     free = np.isnan(thickness)
     hole = free & ndimage.binary_dilation(opening, iterations=3)

@@ -14,7 +14,7 @@ from ..volume import Volume
 from .ray_grid import RadiusMap, filled_from_nearest
 
 _FILM_MM = 0.75  # on the bone beside a hole that nobody would build
-_NEAR_MM = 20.0  # of bone beside a hole that tells how thin sound bone is there
+_NEAR_MM = 20.0  # of bone beside a hole that gives the thickness of sound bone
 
 
 def voxels_between(
@@ -77,7 +77,7 @@ def thickened(
 
 
 def _is_level(step: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Where a prosthesis rises so little above the bone that this bone is whole; a worn rim is a real step down."""
+    """Where a prosthesis rises so little above the bone that this bone is whole; a thinned rim is a real step down."""
     rise = ndimage.median_filter(np.nan_to_num(step, nan=np.inf), 5) >= _FILM_MM
     return ~ndimage.binary_opening(rise, iterations=2)
 

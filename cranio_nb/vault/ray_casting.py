@@ -62,35 +62,32 @@ def expected_radius(
         mm.
     """
     some = np.s_[::_EVERY, ::_EVERY]
-    # the last bone along each ray of the coarse pass
-    lengths = np.arange(typical - 35, typical + 30, 1.0)
-    steps = bone.steps(directions[some])[..., None, :]
-    is_bone = bone.at_index(bone.to_voxel(centre) + steps * lengths[:, None], outside=False)
-    last = is_bone.shape[-1] - 1 - is_bone[..., ::-1].argmax(axis=-1)
-    outermost = np.where(is_bone.any(axis=-1), lengths[last], np.nan)
-    outermost[hidden[some]] = np.nan
-    # a surface through it, most faithful where it matters most
-    v, u = np.indices(hidden.shape) / (len(hidden) - 1) * 2 - 1
-    weight = np.exp(-((degrees[some] / _FADE_DEG) ** 2))
-    return _robust_surface(v[some], u[some], outermost, weight)(v, u)
-
-
-def _robust_surface(v: NDArray, u: NDArray, values: NDArray, weight: NDArray):
-    """Fourth-order polynomial in (v, u) fitted with outliers down-weighted, as a function."""
+    outermost = np.where(hidden[some], np.nan, _outermost_bone(bone, centre, directions[some], typical))
+    # terms v^i u^j with i + j <= 4 of a surface through it
     powers = [(i, j) for i in range(5) for j in range(5 - i)]
-    # terms v^i u^j with i + j <= 4
-    known = np.isfinite(values)
-    basis = np.stack([v[known] ** i * u[known] ** j for i, j in powers], axis=-1)
-    base = np.sqrt(weight[known])
+    v, u = np.indices(hidden.shape) / (len(hidden) - 1) * 2 - 1
+    known = np.isfinite(outermost)
+    basis = np.stack([v[some][known] ** i * u[some][known] ** j for i, j in powers], axis=-1)
+    # most faithful where it matters most, outliers down-weighted
+    base = np.sqrt(np.exp(-((degrees[some] / _FADE_DEG) ** 2))[known])
     c = reweighted_fit(
         basis,
-        values[known],
+        outermost[known],
         lambda residuals: cauchy_weights(residuals, _STRAY_MM, times=base),
         start=base,
         n_iter=8,
         ridge=1e-3,
     )
-    return lambda v, u: sum(k * v**i * u**j for k, (i, j) in zip(c, powers, strict=True))
+    return np.sum([k * v**i * u**j for k, (i, j) in zip(c, powers, strict=True)], axis=0)
+
+
+def _outermost_bone(bone: Volume, centre: NDArray, directions: NDArray, typical: float) -> NDArray[np.float64]:
+    """Radius of the last bone along each ray, about a typical one, mm; nan where it meets none."""
+    lengths = np.arange(typical - 35, typical + 30, 1.0)
+    steps = bone.steps(directions)[..., None, :]
+    is_bone = bone.at_index(bone.to_voxel(centre) + steps * lengths[:, None], outside=False)
+    last = is_bone.shape[-1] - 1 - is_bone[..., ::-1].argmax(axis=-1)
+    return np.where(is_bone.any(axis=-1), lengths[last], np.nan)
 
 
 def surface_radii(

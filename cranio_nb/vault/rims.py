@@ -1,11 +1,11 @@
 """Stage 2, features for real skulls: radii along rays come in -> the ends of the gap in every slice go out.
 
 Frames: slice (row, col), and polar (angle, radius) about a centre inside the head; angle 0 points up the slice
-(against the rows) and grows towards the columns. Lengths in the unit of the slice.
+(against the rows) and grows towards the columns. Lengths in mm.
 
 The skeleton of a real slice forks, loops and runs into the skull base. Along rays from inside the head the vault is one
 radius per direction instead: outer surface, inner surface, and a gap. Boundary points are still left out near the
-rim (`skip`) and fitted over a neighbourhood (`reach`), both arc lengths as in the paper.
+rim (`skip_mm`) and fitted over a neighbourhood (`reach_mm`), both arc lengths as in the paper.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class RimFits:
     points, tangents : ndarray, shape (P, 2, 2, 2)
         [slice, boundary (0 outer, 1 inner), end, (row, col)]; tangents point into the gap; nan where unknown.
     turns : ndarray, shape (P, 2, 2)
-        [slice, boundary, end]: how much the slope of the radius changes over `reach`, radians. Sound vault turns
+        [slice, boundary, end]: how much the slope of the radius changes over `reach_mm`, radians. Sound vault turns
         little; ridges, sinuses and thin spots turn much, and a tangent taken there says little about the gap.
     """
 
@@ -72,19 +72,19 @@ class RimFits:
     turns: NDArray[np.float64]
 
 
-def fit_rims(profile: RayProfile, *, skip: float, reach: float, order: int = 2, n_points: int = 40) -> RimFits:
+def fit_rims(profile: RayProfile, *, skip_mm: float, reach_mm: float, order: int = 2, n_points: int = 40) -> RimFits:
     """Fit both boundaries beside the gap and carry position and tangent to the first fitted point.
 
     Parameters
     ----------
     profile : RayProfile
-    skip, reach : float
-        Arc lengths on the boundary: left out next to the gap, and fitted after that.
+    skip_mm, reach_mm : float
+        Arc lengths on the boundary, mm: left out next to the gap, and fitted after that.
     order : int
         1: radius linear in the angle, an arc about the centre where it is constant. 2: with its bend, so that the
         tangent at the rim is not that of the middle of the neighbourhood.
     n_points : int
-        Points sampled over `reach`.
+        Points sampled over `reach_mm`.
 
     Returns
     -------
@@ -99,7 +99,7 @@ def fit_rims(profile: RayProfile, *, skip: float, reach: float, order: int = 2, 
     for boundary, radius in enumerate((profile.outer, profile.inner)):
         typical = np.nanmedian(radius)
         # rays from the first fitted point on, as arc lengths on this boundary
-        away = 1 + np.rint((skip + t * reach) / (typical * step)).astype(np.intp)
+        away = 1 + np.rint((skip_mm + t * reach_mm) / (typical * step)).astype(np.intp)
         for end, direction in enumerate((-1, 1)):
             rays = gap[good, end][:, None] + direction * away
             inside = (rays >= 0) & (rays < radius.shape[1])

@@ -4,12 +4,15 @@ import ast
 from pathlib import Path
 
 import numpy as np
+import pytest
 from scipy import ndimage, spatial
 from skimage import measure, morphology
 
 from cranio_nb.curves import cubic, spiral
 from cranio_nb.stages import deformable_model
-from cranio_nb.teaching import build, check
+from cranio_nb.teaching import check
+from cranio_nb.teaching.lesson_text import read_lesson, tags
+from cranio_nb.teaching.student_copy import exercise_number, make_stub
 
 SOURCES = sorted((Path(__file__).parents[2] / "notebooks" / "src").glob("*.py"))
 LIBRARY = {
@@ -37,11 +40,11 @@ def shipped(stub):
     """Exercise -> the function of its solution cell, or of its stub in the student's copy."""
     found = {}
     for source in SOURCES:
-        cells = build.read(source).cells
+        cells = read_lesson(source).cells
         for cell in cells:
-            if "solution" in build.tags(cell):
-                number = build._next_number(cells, cell)
-                found[number] = function(build._stub(cell.source, number) if stub else cell.source)
+            if "solution" in tags(cell):
+                number = exercise_number(cells, cell)
+                found[number] = function(make_stub(cell.source, number) if stub else cell.source)
     return found
 
 
@@ -55,11 +58,25 @@ def written(name, body):
     return function(f"def answer({arguments}):\n    {body}")
 
 
-def listed(wrong):
-    """(exercise, body, hint) of every wrong answer, for a test's parameters."""
-    return [(name, *answer) for name, answers in wrong.items() for answer in answers]
-
-
 def judge(name, body):
     """The verdict on a body of an exercise's function."""
     return check.exercise(name, written(name, body))
+
+
+def hint_tests(wrong, exercises, complete=lambda name, body: body):
+    """The two tests of a lesson: all exercises have typical wrong answers, and each of these gets its hint.
+
+    `wrong` holds (body, words of the hint) by exercise, `complete` makes a whole body of what is written there.
+    """
+
+    def test_every_exercise_has_wrong_answers():
+        assert list(wrong) == list(exercises) and all(len(answers) >= 3 for answers in wrong.values())
+
+    listed = [(name, *answer) for name, answers in wrong.items() for answer in answers]
+
+    @pytest.mark.parametrize(("name", "body", "hint"), listed)
+    def test_a_typical_wrong_answer_gets_its_hint(name, body, hint):
+        verdict = judge(name, complete(name, body))
+        assert not verdict.passed and hint in verdict.message
+
+    return test_every_exercise_has_wrong_answers, test_a_typical_wrong_answer_gets_its_hint

@@ -2,35 +2,15 @@
 
 import numpy as np
 import pytest
+from hollow_ball import CENTRE, HALF_DEG, INNER, OUTER, STEP, ball
 
 from cranio_nb.errors import NoOpening
 from cranio_nb.methods.design import design
-from cranio_nb.opening import Opening
-from cranio_nb.volume import Volume
-
-INNER, OUTER, HALF = 72.0, 80.0, 22.0  # mm, mm, degrees
-EYE = np.array([-104.0, 33.0, -812.0])
-STEP = 1.5
-
-
-def ball(towards):
-    """A hollow ball about `EYE` with a conical hole, and its opening."""
-    reach = OUTER + 6
-    n = int(2 * reach / STEP)
-    affine = np.eye(4)
-    affine[:3, :3], affine[:3, 3] = np.eye(3)[:, ::-1] * STEP, EYE - reach
-    away = np.moveaxis(np.indices((n, n, n)), 0, -1) @ affine[:3, :3].T - reach
-    radius = np.linalg.norm(away, axis=-1)
-    cosine = away @ (towards / np.linalg.norm(towards)) / np.maximum(radius, 1e-9)
-    hole = cosine > np.cos(np.radians(HALF))
-    bone = (radius >= INNER) & (radius <= OUTER) & ~hole
-    sheet = (radius >= OUTER - 4) & (radius <= OUTER) & hole
-    return Volume(bone, affine), Opening(Volume(sheet, affine), EYE)
 
 
 def depths(made, towards):
-    """Heights of the patch's voxels over the eye along the hole's axis, mm."""
-    points = made.patch.to_world(np.argwhere(made.patch.voxels)) - EYE
+    """Heights of the patch's voxels over the head centre along the hole's axis, mm."""
+    points = made.patch.to_world(np.argwhere(made.patch.voxels)) - CENTRE
     return points @ (towards / np.linalg.norm(towards))
 
 
@@ -40,7 +20,7 @@ def test_a_round_hole_gets_a_flat_lid_from_rim_to_rim(axial):
     bone, opening = ball(towards)
     made = design(bone, (opening,), axial=axial, method="hull")
     height = depths(made, towards)
-    lid, floor = OUTER * np.cos(np.radians(HALF)), INNER * np.cos(np.radians(HALF))
+    lid, floor = OUTER * np.cos(np.radians(HALF_DEG)), INNER * np.cos(np.radians(HALF_DEG))
     assert np.quantile(height, 0.99) < lid + 1.5 * STEP and np.quantile(height, 0.01) > floor - 1.5 * STEP
     assert np.quantile(height, 0.95) == pytest.approx(lid, abs=2.0)
     assert height.max() < OUTER - 2  # the ball's own cap would reach up to OUTER
@@ -62,8 +42,8 @@ def test_the_hulls_of_slices_lie_below_the_hull_in_space(skull, openings):
     """Every point of a slice's hull is a point of the hull in space."""
     (part,) = design(skull("round"), openings("round"), method="hull").working
     sliced = design(skull("round"), openings("round"), axial=True, method="hull").patch
-    away = sliced.to_world(np.argwhere(sliced.voxels)) - part.vault.grid.centre
-    v, u = np.rint(part.vault.grid.locate(away)).astype(int)
+    away = sliced.to_world(np.argwhere(sliced.voxels)) - part.radius_map.grid.centre
+    v, u = np.rint(part.radius_map.grid.locate(away)).astype(int)
     top = part.outer[v, u]
     above = np.linalg.norm(away, axis=1) - top
     assert np.quantile(above[np.isfinite(top)], 0.99) < 0.6 * sliced.spacing.max()
@@ -79,6 +59,6 @@ def test_every_slice_says_how_it_was_filled(skull, openings):
 
 def test_a_hull_is_no_deeper_or_higher_than_its_two_surfaces(skull, openings):
     (part,) = design(skull("round"), openings("round"), method="hull").working
-    inside = part.vault.hole
+    inside = part.radius_map.hole
     assert np.isfinite(part.outer[inside]).mean() > 0.98 and np.isnan(part.outer[~inside]).all()
     assert (part.outer - part.inner)[np.isfinite(part.outer)].min() > 2.0

@@ -54,7 +54,7 @@ def test_the_fitted_image_meets_the_rim(skull, openings):
     steps = []
     for on in (False, True):
         (made,) = design(skull("burr_hole"), openings("burr_hole"), fit_rim=on, method="reflection").working
-        hole, bone = made.own.hole, made.own.outer
+        hole, bone = made.radius_map.hole, made.radius_map.outer
         known = np.isfinite(bone) & ~ndimage.binary_dilation(hole, iterations=2)
         v, u = ndimage.distance_transform_edt(~known, return_distances=False, return_indices=True)
         edge = hole & ~ndimage.binary_erosion(hole)
@@ -64,11 +64,11 @@ def test_the_fitted_image_meets_the_rim(skull, openings):
 
 def test_the_difference_of_a_linear_step_goes_on_across_the_hole(skull, openings):
     (made,) = design(skull("burr_hole"), openings("burr_hole"), method="reflection").working
-    v, u = np.indices(made.own.outer.shape)
+    v, u = np.indices(made.radius_map.outer.shape)
     step = 1.0 + 0.01 * v - 0.02 * u
-    known = np.where(made.own.hole, np.nan, step)
-    found = reflection._difference(made.own, known, 2.0)
-    np.testing.assert_allclose(found[made.own.hole], step[made.own.hole], atol=0.1)
+    known = np.where(made.radius_map.hole, np.nan, step)
+    found = reflection._difference(made.radius_map, known, 2.0)
+    np.testing.assert_allclose(found[made.radius_map.hole], step[made.radius_map.hole], atol=0.1)
 
 
 @pytest.mark.parametrize("defect", ["vertex", "bilateral"])

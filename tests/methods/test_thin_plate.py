@@ -131,8 +131,8 @@ def made(skull):
 
 def test_the_prosthesis_is_nowhere_thinner_than_sound_bone(made):
     (plate,) = made.working
-    assert np.nanmin(plate.chart.outer - plate.chart.inner) < 3  # the bevelled rim is
-    radii = [np.array(r)[plate.chart.hole] for r in (plate.outer, plate.inner)]
+    assert np.nanmin(plate.radius_map.outer - plate.radius_map.inner) < 3  # the bevelled rim is
+    radii = [np.array(r)[plate.radius_map.hole] for r in (plate.outer, plate.inner)]
     assert (radii[0] - radii[1]).min() > 3
 
 
@@ -157,11 +157,11 @@ def test_without_a_plane_of_symmetry_the_plate_is_bent_all_the_same(skull, made,
 def test_the_working_holds_a_plate_for_each_opening(made, skull):
     assert len(made.working) == 1 and isinstance(made.patch, Volume)
     plate = made.working[0]
-    np.testing.assert_array_equal(np.isfinite(plate.outer), plate.chart.hole)
+    np.testing.assert_array_equal(np.isfinite(plate.outer), plate.radius_map.hole)
 
 
 def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
-    found = symmetry.find_symmetry_plane(skull("unilateral"), made.working[0].chart.grid.centre)
+    found = symmetry.find_symmetry_plane(skull("unilateral"), made.working[0].radius_map.grid.centre)
     for residual, used in ((1.2, True), (1.4, False)):
         monkeypatch.setattr(symmetry, "find_symmetry_plane", lambda *_, r=residual: replace(found, residual=r))
         plate = design(skull("unilateral"), method="thin-plate")
@@ -171,10 +171,10 @@ def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
 
 def test_a_blurred_rim_does_not_pull_the_plate_down(skull, made):
     (plate,) = made.working
-    beside = ndimage.distance_transform_edt(~plate.chart.hole) * plate.chart.step_mm
+    beside = ndimage.distance_transform_edt(~plate.radius_map.hole) * plate.radius_map.step_mm
     grazed = (beside > 0) & (beside <= 0.8)
     assert grazed.any()
-    low = replace(plate.chart, outer=np.where(grazed, plate.chart.outer - 5.0, plate.chart.outer))
+    low = replace(plate.radius_map, outer=np.where(grazed, plate.radius_map.outer - 5.0, plate.radius_map.outer))
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(radius_measurement, "measure_around", lambda bone, one: low)
         again = design(skull("unilateral"), method="thin-plate")

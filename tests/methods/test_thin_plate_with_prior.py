@@ -15,7 +15,7 @@ def test_a_prior_draws_the_plate_towards_what_skulls_predict_but_not_off_the_rim
     (alone,) = design(bone, method="thin-plate").working
     made = design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
     (plate,) = made.working
-    inside = ndimage.distance_transform_edt(plate.chart.hole) * plate.chart.step_mm
+    inside = ndimage.distance_transform_edt(plate.radius_map.hole) * plate.radius_map.step_mm
     rim, middle = (inside > 0) & (inside < 3), inside > 15
     for bent, held, expected in zip(
         (alone.outer, alone.inner), (plate.outer, plate.inner), plate.expected, strict=True

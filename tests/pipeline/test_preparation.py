@@ -6,7 +6,7 @@ import pytest
 import cranio_nb as cn
 from cranio_nb.errors import InputRefused, NoOpening
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.pipeline.preparation import Clock, check_margin, prepare, read_truth, touches_border, within_planes
+from cranio_nb.pipeline.preparation import Clock, check_margin, check_truth_mask, prepare, touches_border, within_planes
 
 
 @pytest.fixture
@@ -43,16 +43,17 @@ def test_planes_without_an_opening_and_planes_that_are_none_are_refused(openings
         assert refused.value.code == "BadPlanes"
 
 
-def test_the_missing_bone_must_lie_on_the_scans_grid(tmp_path, skull, phantom):
+def test_the_missing_bone_must_lie_on_the_scans_grid(scan, tmp_path, skull, phantom):
     bone, path = skull("burr_hole"), tmp_path / "truth.nii.gz"
-    write_nifti(cn.Volume(phantom("burr_hole").implant, bone.affine), path)
-    np.testing.assert_array_equal(read_truth(path, bone).voxels, phantom("burr_hole").implant)
+    truth = cn.Volume(phantom("burr_hole").implant, bone.affine)
+    write_nifti(truth, path)
+    np.testing.assert_array_equal(prepare(scan, truth=path).truth.voxels, truth.voxels)
     with pytest.raises(InputRefused) as refused:
-        read_truth(path, bone.crop((slice(1, None), slice(None), slice(None))))
+        check_truth_mask(truth, bone.crop((slice(1, None), slice(None), slice(None))))
     assert refused.value.code == "GridMismatch"
     write_nifti(bone.with_voxels(np.zeros(bone.shape, bool)), path)
     with pytest.raises(InputRefused) as refused:
-        read_truth(path, bone)
+        prepare(scan, truth=path)
     assert refused.value.code == "EmptyMask"
 
 

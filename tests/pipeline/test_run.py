@@ -9,7 +9,7 @@ from cranio_nb.methods import catalogue
 from cranio_nb.methods.piece import Piece
 from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.pipeline.preparation import prepare
-from cranio_nb.pipeline.run import design_inside, run_design
+from cranio_nb.pipeline.run import check_patch, run_design
 from cranio_nb.pipeline.trial import Contender, attempt
 
 
@@ -53,7 +53,7 @@ def test_beside_the_edge_it_is_the_images(skull, openings):
     cn.add_method("full", lambda bone, openings: (Piece(np.ones(bone.shape, bool)) for _ in openings))
     try:
         with pytest.raises(InputRefused) as refused:
-            design_inside(skull("burr_hole").crop(box), (near,), "full", "default", {})
+            check_patch(cn.design(skull("burr_hole").crop(box), (near,), method="full"), (near,))
     finally:
         catalogue.remove_method("full")
     assert refused.value.code == "OpeningLeavesImage" and "scan" in refused.value.remedy

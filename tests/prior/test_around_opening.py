@@ -32,8 +32,10 @@ def test_a_hole_in_a_head_is_predicted_on_its_map(learned, phantom, skull):
 def test_the_mirrored_head_is_predicted_mirrored(learned, skull):
     bone = skull("round", 0)
     twin = mirror_image(bone)
-    charts = [radius_measurement.measure_around(one, find_openings(one)[0]) for one in (bone, twin)]
-    found = [predict_around(learned, one, radius_map) for one, radius_map in zip((bone, twin), charts, strict=True)]
-    middles = [np.nanmean(one.outer[radius_map.hole]) for one, radius_map in zip(found, charts, strict=True)]
+    radius_maps = [radius_measurement.measure_around(one, find_openings(one)[0]) for one in (bone, twin)]
+    found = [
+        predict_around(learned, one, radius_map) for one, radius_map in zip((bone, twin), radius_maps, strict=True)
+    ]
+    middles = [np.nanmean(one.outer[radius_map.hole]) for one, radius_map in zip(found, radius_maps, strict=True)]
     assert middles[0] == pytest.approx(middles[1], abs=0.3)
     assert np.linalg.norm(found[0].frame.origin * [-1, 1, 1] - found[1].frame.origin) < 1.0

@@ -2,20 +2,19 @@
 
 import json
 import re
-from pathlib import Path
 
 import nbformat
 import pytest
 from click.testing import CliRunner
+from lesson_cells import FOLDER, NAMES, SOURCES, code, tagged
 
 from cranio_nb.cli.main import main
 from cranio_nb.errors import InputRefused
 from cranio_nb.teaching import build
 from cranio_nb.teaching.exercises import EXERCISES
+from cranio_nb.teaching.lesson_text import read_lesson, tags
+from cranio_nb.teaching.student_copy import exercise_copy
 
-FOLDER = Path(__file__).parents[2] / "notebooks"
-SOURCES = sorted((FOLDER / "src").glob("*.py"))
-NAMES = [path.stem for path in SOURCES]
 PLACE = re.compile(r"(?<![\w.~])/(home|root|work|tmp|Users|opt|mnt|srv)/\w")
 
 SMALL = '''# %% [markdown]
@@ -55,25 +54,12 @@ def lesson(request):
     return nbformat.read(FOLDER / f"{request.param}.ipynb", as_version=4)
 
 
-@pytest.fixture(params=NAMES)
-def copy(request):
-    return nbformat.read(FOLDER / "exercises" / f"{request.param}.ipynb", as_version=4)
-
-
 @pytest.fixture
 def small(tmp_path):
     """A folder with one small lesson."""
     (tmp_path / "src").mkdir()
     (tmp_path / "src" / "90_small.py").write_text(SMALL)
     return tmp_path
-
-
-def code(notebook):
-    return [cell for cell in notebook.cells if cell.cell_type == "code"]
-
-
-def tagged(notebook, tag):
-    return [cell for cell in code(notebook) if tag in build.tags(cell)]
 
 
 def pictures(notebook):
@@ -88,12 +74,12 @@ class TestShippedLessons:
 
     @pytest.mark.parametrize("source", SOURCES, ids=NAMES)
     def test_are_made_from_their_texts(self, source):
-        text = build.read(source)
+        text = read_lesson(source)
         made = nbformat.read(FOLDER / f"{source.stem}.ipynb", as_version=4)
-        known = [(cell.id, cell.source, build.tags(cell)) for cell in made.cells]
-        assert known == [(cell.id, cell.source, build.tags(cell)) for cell in text.cells]
+        known = [(cell.id, cell.source, tags(cell)) for cell in made.cells]
+        assert known == [(cell.id, cell.source, tags(cell)) for cell in text.cells]
         copy = nbformat.read(FOLDER / "exercises" / f"{source.stem}.ipynb", as_version=4)
-        assert nbformat.writes(build.exercise_copy(made)) == nbformat.writes(copy)
+        assert nbformat.writes(exercise_copy(made)) == nbformat.writes(copy)
 
     def test_nothing_that_is_compared_is_silently_skipped(self, lesson):
         counts = [cell.execution_count for cell in code(lesson)]
@@ -159,25 +145,6 @@ class TestShippedLessons:
         assert sum(path.stat().st_size for path in FOLDER.rglob("*.ipynb")) < 15_000_000
 
 
-class TestShippedCopies:
-    def test_hold_no_answer_but_folded_away(self, copy):
-        assert not any(cell.outputs or cell.execution_count for cell in code(copy))
-        stubs = [cell for cell in code(copy) if "NotImplementedError" in cell.source]
-        folded = [c for c in copy.cells if c.cell_type == "markdown" and "<summary>Solution</summary>" in c.source]
-        assert len(stubs) == len(folded) == len(tagged(copy, "check")) >= 2
-        assert not any("return" in cell.source.split("NotImplementedError")[-1] for cell in stubs)
-
-    def test_name_the_exercise_in_each_stub(self, copy):
-        numbers = [re.search(r'NotImplementedError\("Exercise ([\d.]+)"', cell.source) for cell in code(copy)]
-        checks = [re.search(r'check\.exercise\("([\d.]+)"', cell.source)[1] for cell in tagged(copy, "check")]
-        assert [hit[1] for hit in numbers if hit] == checks
-
-    def test_expected_pictures_are_attached_and_described(self, copy):
-        for cell in (c for c in copy.cells if "Expected picture" in c.source):
-            assert re.search(r"!\[\S.{40,}\]\(attachment:expected\.png\)", cell.source)
-            assert len(cell.attachments["expected.png"]["image/png"]) > 1000
-
-
 class TestCommand:
     def test_builds_the_same_bytes_twice_and_knows_when_out_of_step(self, small):
         runner = CliRunner()
@@ -218,3 +185,10 @@ class TestCommand:
     def test_refuses_a_folder_without_lessons(self, tmp_path):
         with pytest.raises(InputRefused, match="No lesson texts"):
             build.build(tmp_path)
+
+
+def test_the_shipped_notebooks_are_as_they_were_built(tmp_path):
+    for path in [*FOLDER.glob("*.ipynb"), *FOLDER.glob("exercises/*.ipynb")]:
+        assert build.is_built(path), path.name
+    (tmp_path / "a.ipynb").write_text("no notebook")
+    assert not build.is_built(tmp_path / "a.ipynb") and not build.is_built(tmp_path / "none.ipynb")

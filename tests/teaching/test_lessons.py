@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from cranio_nb.teaching import build, exercises, widgets
+from cranio_nb.teaching import exercises, widgets
+from cranio_nb.teaching.lesson_text import read_lesson
 
 ROOT = Path(__file__).parents[2]
 SOURCES = sorted((ROOT / "notebooks" / "src").glob("*.py"))
@@ -52,7 +53,7 @@ def test_each_stage_has_a_lesson_panels_and_exercises_of_its_name():
 
 
 def test_every_name_that_a_lesson_puts_in_code_font_with_a_module_is_there(lesson):
-    text = "\n".join(cell.source for cell in build.read(lesson).cells if cell.cell_type == "markdown")
+    text = "\n".join(cell.source for cell in read_lesson(lesson).cells if cell.cell_type == "markdown")
     for module, name in set(re.findall(r"`(\w+)\.(\w+)[`(]", text)):
         homes = [path for path in (ROOT / "cranio_nb").rglob(f"{module}.py") if "teaching" not in path.parts]
         assert not homes or any(re.search(rf"\b{name}\b", home.read_text()) for home in homes), f"{module}.{name}"

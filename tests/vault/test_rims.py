@@ -42,7 +42,7 @@ def test_the_gap_is_the_first_and_last_missing_ray():
 def test_points_lie_on_the_circle_and_tangents_along_it():
     skip, reach = 4.0, 24.0
     for order in (1, 2):
-        rims = fit_rims(exact_profile(lambda a: 172 + 0 * a), skip=skip, reach=reach, order=order)
+        rims = fit_rims(exact_profile(lambda a: 172 + 0 * a), skip_mm=skip, reach_mm=reach, order=order)
         radius, angle = polar(rims.points)
         np.testing.assert_allclose(radius[:, 0], 172, atol=1e-5)
         np.testing.assert_allclose(radius[:, 1], 160, atol=1e-5)
@@ -63,7 +63,7 @@ def test_points_lie_on_the_circle_and_tangents_along_it():
     ids=["arc", "linear", "bent"],
 )
 def test_radii_of_the_fitted_order_are_carried_exactly(order, radius, slope):
-    rims = fit_rims(exact_profile(radius), skip=4, reach=24, order=order)
+    rims = fit_rims(exact_profile(radius), skip_mm=4, reach_mm=24, order=order)
     found, angle = polar(rims.points[:, 0])
     np.testing.assert_allclose(found, radius(angle), atol=1e-4)
     up, onward = (np.stack(v, axis=-1) for v in ((-np.cos(angle), np.sin(angle)), (np.sin(angle), np.cos(angle))))
@@ -74,8 +74,8 @@ def test_radii_of_the_fitted_order_are_carried_exactly(order, radius, slope):
 
 def test_a_first_order_fit_lags_behind_a_bend_and_a_second_order_fit_does_not():
     profile = exact_profile(lambda a: 170 - 30 * a**2)
-    _, at = polar(fit_rims(profile, skip=4, reach=24).points[0, 0])
-    first, second = (fit_rims(profile, skip=4, reach=24, order=o).tangents[0, 0] for o in (1, 2))
+    _, at = polar(fit_rims(profile, skip_mm=4, reach_mm=24).points[0, 0])
+    first, second = (fit_rims(profile, skip_mm=4, reach_mm=24, order=o).tangents[0, 0] for o in (1, 2))
     swing = np.degrees(np.arccos((first * second).sum(axis=-1)))
     lag = 60 * (24 / 170) / 2  # slope changes by 60 per radian, the middle lies reach / 2 away
     np.testing.assert_allclose(swing, np.degrees(lag / 170), rtol=0.15)
@@ -88,7 +88,7 @@ def test_noise_and_scattered_outliers_do_not_move_the_fit():
     outer = profile.outer + rng.normal(0, 0.3, profile.outer.shape)
     outer[:, ::7] += 9.0  # sutures, screws: 14 % of the rays
     noisy_profile = RayProfile(CENTRE, ANGLES, outer=outer, inner=profile.inner, missing=GAP)
-    clean, noisy = (fit_rims(p, skip=4, reach=40, order=1) for p in (profile, noisy_profile))
+    clean, noisy = (fit_rims(p, skip_mm=4, reach_mm=40, order=1) for p in (profile, noisy_profile))
     assert np.linalg.norm(noisy.points - clean.points, axis=-1).max() < 0.5
     assert degrees_between(noisy.tangents, clean.tangents).max() < 1.5
 
@@ -98,21 +98,23 @@ def test_a_rim_with_bone_for_fewer_than_half_of_its_points_is_unknown():
     for share, known in ((0.6, True), (0.4, False)):
         outer = profile.outer.copy()
         outer[:, ANGLES < -EDGE - (4 + share * 24) / 170] = np.nan
-        rims = fit_rims(RayProfile(CENTRE, ANGLES, outer=outer, inner=profile.inner, missing=GAP), skip=4, reach=24)
+        rims = fit_rims(
+            RayProfile(CENTRE, ANGLES, outer=outer, inner=profile.inner, missing=GAP), skip_mm=4, reach_mm=24
+        )
         assert np.isfinite(rims.points[:, 0, 0]).all() == known
         assert np.isfinite(rims.points[:, 0, 1]).all() and np.isfinite(rims.points[:, 1]).all()
 
 
 def test_a_rim_at_the_edge_of_what_was_looked_at_is_unknown():
     missing = GAP | (ANGLES < 0)
-    rims = fit_rims(exact_profile(lambda a: 170 + 0 * a, missing=missing), skip=4, reach=24)
+    rims = fit_rims(exact_profile(lambda a: 170 + 0 * a, missing=missing), skip_mm=4, reach_mm=24)
     assert np.isnan(rims.points[:, :, 0]).all() and np.isfinite(rims.points[:, :, 1]).all()
 
 
 def test_a_slice_without_a_gap_has_no_rims():
     missing = GAP.copy()
     missing[3] = False
-    rims = fit_rims(exact_profile(lambda a: 170 + 0 * a, missing=missing), skip=4, reach=24)
+    rims = fit_rims(exact_profile(lambda a: 170 + 0 * a, missing=missing), skip_mm=4, reach_mm=24)
     assert np.isnan(rims.points[3]).all() and np.isnan(rims.tangents[3]).all()
     assert np.isfinite(np.delete(rims.points, 3, axis=0)).all()
 
@@ -121,15 +123,15 @@ def test_a_mirrored_profile_gives_mirrored_rims():
     def bent(a):
         return 170 + 9 * a - 30 * a**2 + 4 * a**3
 
-    one, other = (fit_rims(exact_profile(f), skip=4, reach=24) for f in (bent, lambda a: bent(-a)))
+    one, other = (fit_rims(exact_profile(f), skip_mm=4, reach_mm=24) for f in (bent, lambda a: bent(-a)))
     for a, b in ((one.points - CENTRE, other.points - CENTRE), (one.tangents, other.tangents)):
         np.testing.assert_allclose(b[:, :, ::-1] * [1, -1], a, atol=1e-9)
 
 
 def test_scale_is_only_a_unit():
-    one = fit_rims(exact_profile(lambda a: 170 - 30 * a**2), skip=4, reach=24)
+    one = fit_rims(exact_profile(lambda a: 170 - 30 * a**2), skip_mm=4, reach_mm=24)
     big = exact_profile(lambda a: 340 - 60 * a**2, inner=lambda a: 340 - 24 - 60 * a**2)
-    double = fit_rims(big, skip=8, reach=48)
+    double = fit_rims(big, skip_mm=8, reach_mm=48)
     np.testing.assert_allclose(double.points - CENTRE, 2 * (one.points - CENTRE), atol=1e-6)
     np.testing.assert_allclose(double.tangents, one.tangents, atol=1e-9)
 

@@ -1,4 +1,4 @@
-"""Fans of slices through a chart: closed-form frames, profiles of a known vault, pictures of a mask."""
+"""Fans of slices through a radius map: closed-form frames, profiles of a known vault, pictures of a mask."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from cranio_nb.volume import Volume
 
 STEP = np.radians(1.0)
 N = 121
-EYE = np.array([31.0, -47.0, 812.0])
+CENTRE = np.array([31.0, -47.0, 812.0])
 WIDE, LONG = 0.25, 0.45  # half axes of the hole across and along, radians
 
 
@@ -21,11 +21,11 @@ def turned():
 
 @pytest.fixture(scope="module")
 def vault():
-    """A chart about an oval hole, 8 mm of bone, with an outer radius of 80 mm that grows towards u."""
+    """A radius map about an oval hole, 8 mm of bone, with an outer radius of 80 mm that grows towards u."""
     v, u = (np.mgrid[:N, :N] - (N - 1) / 2) * STEP
     hole = (u / WIDE) ** 2 + (v / LONG) ** 2 < 1
     outer = np.where(hole, np.nan, 80 + 5 * u)
-    return RadiusMap(RayGrid(EYE, turned(), STEP, N), outer=outer, inner=outer - 8, hole=hole)
+    return RadiusMap(RayGrid(CENTRE, turned(), STEP, N), outer=outer, inner=outer - 8, hole=hole)
 
 
 @pytest.mark.parametrize("n", [1, 2, 6])
@@ -43,8 +43,8 @@ def test_every_ray_of_every_fan_is_found_again(vault, n):
 def test_a_ray_lies_in_its_slice_at_its_angle(vault):
     """Frame and angle give the same ray: angle 0 against the rows, growing towards the columns."""
     fan = fans(vault, 3)[1]
-    origin, row, col = np.moveaxis(fan.frames(EYE), 1, 0)
-    np.testing.assert_array_equal(origin, np.tile(EYE, (len(origin), 1)))
+    origin, row, col = np.moveaxis(fan.frames(CENTRE), 1, 0)
+    np.testing.assert_array_equal(origin, np.tile(CENTRE, (len(origin), 1)))
     a = fan.angles[None, :, None]
     np.testing.assert_allclose(-np.cos(a) * row[:, None] + np.sin(a) * col[:, None], fan.directions, atol=1e-12)
     np.testing.assert_allclose((row * col).sum(axis=1), 0, atol=1e-12)
@@ -94,7 +94,7 @@ def box():
     """Random blocks on a leaning, unequal grid far from the origin."""
     affine = np.eye(4)
     affine[:3, :3] = turned() * (3.0, 0.8, 0.8)
-    affine[:3, 3] = EYE
+    affine[:3, 3] = CENTRE
     return Volume(np.random.default_rng(2).random((6, 20, 30)) < 0.5, affine)
 
 
@@ -113,11 +113,11 @@ def test_a_picture_shows_any_part_and_nothing_beyond_the_grid(box):
 
 def test_a_fan_shows_a_ball_about_its_eye_as_a_disk_in_every_slice(vault):
     affine = np.eye(4)
-    affine[:3, 3] = EYE - 30
+    affine[:3, 3] = CENTRE - 30
     index = np.indices((61, 61, 61)) - 30
     ball = Volume((index**2).sum(axis=0) <= 25**2, affine)
     across = np.arange(-30, 31.0)
     disk = across[:, None] ** 2 + across**2
-    for frame in fans(vault, 2)[1].frames(EYE)[::20]:
+    for frame in fans(vault, 2)[1].frames(CENTRE)[::20]:
         seen = picture(ball, frame, across, across)
         assert seen[disk <= 24**2].all() and not seen[disk >= 26**2].any()

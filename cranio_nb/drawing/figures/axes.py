@@ -81,6 +81,7 @@ def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str 
         Its length in words; by default `length` in mm.
     colour : str
     """
+    # axes may run either way: the bar follows x
     (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
     x, y = x0 + 0.03 * (x1 - x0), y0 + 0.03 * (y1 - y0)
     step = length * np.sign(x1 - x0)
@@ -99,6 +100,7 @@ def name_sides(ax: Axes, right_down: NDArray[np.float64]) -> None:
         World directions (LPS) to the right and down in the picture.
     """
     right, down = right_down[:2]
+    # letters at the right, the left and the lower edge, turned inwards
     for x, y, direction in ((0.99, 0.5, right), (0.01, 0.5, -right), (0.5, 0.99, -down)):
         across, up = {0.99: "right", 0.01: "left"}.get(x, "center"), "top" if y > 0.9 else "center"
         letter, style = side_letter(direction), {"ha": across, "va": up, "color": MIDDLE_GREY}
@@ -121,6 +123,7 @@ def fill_mask(
     alpha : float
         0 clear to 1 opaque.
     """
+    # opacity 0 where the mask is false
     rgba = np.zeros((*mask.shape, 4))
     rgba[mask] = (*rgb_shares(colour), alpha)
     ax.imshow(rgba, extent=extent, interpolation="nearest")

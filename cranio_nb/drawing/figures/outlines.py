@@ -78,6 +78,7 @@ def outlines_figure(
     -------
     Figure
     """
+    # a slice frame, and even places in it
     right, down = np.asarray(axes, float)
     frame = np.stack([np.asarray(centre, float), down, right])
     rows = np.arange(-0.5 * reach_mm, 0.7 * reach_mm, _PIXEL_MM)

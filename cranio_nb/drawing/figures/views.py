@@ -42,6 +42,7 @@ def views_of(directions: Sequence[ArrayLike]) -> dict[str, NDArray[np.float64]]:
     >>> list(views_of([(0.9, 0.1, 0.4)]))
     ['facing the opening', 'from the left', 'from above']
     """
+    # how well an opening is seen: cosine between its direction and the line of sight
     towards = np.array(directions, float)
     views, seen = {"facing the opening": towards[0]}, towards @ towards[0]
     for _ in range(2):
@@ -101,6 +102,7 @@ def distance_figure(
     -------
     Figure
     """
+    # the side lies on the same faces as the whole: moved a little to the viewer, it is what is seen
     near = np.asarray(towards, float) / np.linalg.norm(towards) * _LIFT_MM
     coloured = Solid(Mesh(surface.vertices + near, surface.faces), colour_scale(top_mm).to_rgba(distances)[:, :3])
     solids = [Solid(whole, rgb_shares(NO_VALUE)), coloured]
@@ -111,5 +113,5 @@ def distance_figure(
 
 
 def _with_rim(picture: Picture) -> tuple[Figure, Axes]:
-    """A rendered picture with room around it for letters and scale."""
+    """A rendered picture with a border for letters and scale."""
     return show_pixels(np.pad(picture.rgb, ((_RIM_PX, 2 * _RIM_PX), (_RIM_PX, _RIM_PX), (0, 0)), constant_values=1))

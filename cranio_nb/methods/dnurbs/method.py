@@ -4,8 +4,8 @@ Bone mask in, pieces out. Source: Qin and Terzopoulos 1996, "D-NURBS: a physics-
 design", IEEE TVCG 2(1). Faithful are the rational surface, its control points and weights as generalised coordinates,
 the thin plate under tension, the springs to data, and Lagrange's equations (`sheet`, `sheet_motion`).
 
-Ours is what makes a prosthesis of it. The vault around the hole is seen along rays (`chart`); every ray that meets
-sound bone is a spring from the bone's outer surface to the place of that ray on the outer sheet, and so inside.
+Ours is what makes a prosthesis of it. The vault around the hole is measured along rays (`RadiusMap`); every ray that
+meets sound bone is a spring from the bone's outer surface to the place of that ray on the outer sheet, and so inside.
 Springs far off the sheet are weakened, so that a suture or a ridge does not dent it. The rigidity follows from a
 wavelength l: with one spring for each ray, a ripple of the bone of wavelength l is halved, shorter ones vanish,
 longer ones pass:
@@ -51,10 +51,10 @@ class Sheets:
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
         The bone around the hole.
     outer, inner : Sheet
-        At rest, in mm along the chart's axes from its eye.
+        At rest, in mm along the map's axes from the head centre.
     settings : tuple of Setting
         Springs with their last strengths, natural shape and material of the outer and the inner sheet, same frame.
     n_iter : tuple of int
@@ -63,7 +63,7 @@ class Sheets:
         Whether each came to rest.
     """
 
-    vault: RadiusMap
+    radius_map: RadiusMap
     outer: Sheet
     inner: Sheet
     settings: tuple[Setting, Setting]
@@ -86,10 +86,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     wavelength_mm : float
         Ripples of the bone of this length in mm are halved; the rigidity follows from it.
     tension_mm2 : float
@@ -106,6 +104,7 @@ def pieces(
     Piece
         The record's `sheets` describe the outer and the inner sheet; `working` holds `Sheets`.
     """
+    # without mass the motion is of first order: damping alone, no swinging
     dynamics = Dynamics(mass=0.0, free_weights=True) if free_weights else None
     plate = {"wavelength_mm": wavelength_mm, "tension_mm2": tension_mm2, "span_mm": span_mm}
     for opening in openings:
@@ -116,15 +115,16 @@ def pieces(
             tol_mm=tol_mm,
             max_iter=max_iter,
         )
-        radii = [_inside(made.vault, radii_of(part, made.vault)) for part in (made.outer, made.inner)]
-        outer, inner = radius_voxels.thickened(made.vault, outer=radii[0], inner=radii[1])
-        between = radius_voxels.voxels_between(made.vault, bone, outer=outer, inner=inner)
+        # the sheets as radii on the rays, the voxels between them, and of these the piece in the hole
+        radii = [_inside(made.radius_map, radii_of(part, made.radius_map)) for part in (made.outer, made.inner)]
+        outer, inner = radius_voxels.thickened(made.radius_map, outer=radii[0], inner=radii[1])
+        between = radius_voxels.voxels_between(made.radius_map, bone, outer=outer, inner=inner)
         voxels = voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
         yield Piece(voxels, (made,), {"sheets": _entries(made)})
 
 
 def fit(
-    vault: RadiusMap,
+    radius_map: RadiusMap,
     *,
     wavelength_mm: float,
     tension_mm2: float,
@@ -137,7 +137,7 @@ def fit(
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
     wavelength_mm, tension_mm2, span_mm, tol_mm, max_iter
         As for `pieces`.
     dynamics : Dynamics, optional
@@ -147,16 +147,20 @@ def fit(
     -------
     Sheets
     """
-    spans = (max(round((len(vault.outer) - 1) * vault.step_mm / span_mm), 4),) * 2
-    size = (len(vault.outer) - 1) * vault.step_mm / spans[0]
+    # uniform knots over the whole map, about span_mm apart
+    spans = (max(round((len(radius_map.outer) - 1) * radius_map.step_mm / span_mm), 4),) * 2
+    size = (len(radius_map.outer) - 1) * radius_map.step_mm / spans[0]
+    # rigidity k (l / 2 pi)^4 with unit strength k: bone ripples of the wavelength l are halved
     material = Material.plate(tension_mm2, (wavelength_mm / (2 * np.pi)) ** 4, (size, size))
     rests, settings = [], []
-    for radius in (vault.outer, vault.inner):
-        springs = springs_to(vault, radius, spans)
-        natural = _sphere(springs.points, vault, spans)
+    for radius in (radius_map.outer, radius_map.inner):
+        # each surface by itself, bent as little as can be from the sphere that fits it
+        springs = springs_to(radius_map, radius, spans)
+        natural = _sphere(springs.points, radius_map, spans)
         rest, springs = sheet.settle(springs, natural, material, rounds=_ROUNDS)
         settings.append(Setting(springs, natural, material))
         rests.append(Motion(rest, np.zeros(0), 0.0, converged=True))
+    # with free weights the equations of motion go on from there
     if dynamics is not None:
         rests = [
             sheet_motion.relax(sheet_motion.start(m.sheet, s, dynamics), s, dynamics, tol=tol_mm, max_iter=max_iter)
@@ -164,15 +168,15 @@ def fit(
         ]
     outer, inner = rests
     counts, ends = (outer.n_iter, inner.n_iter), (outer.converged, inner.converged)
-    return Sheets(vault, outer.sheet, inner.sheet, (settings[0], settings[1]), counts, ends)
+    return Sheets(radius_map, outer.sheet, inner.sheet, (settings[0], settings[1]), counts, ends)
 
 
-def springs_to(vault: RadiusMap, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
+def springs_to(radius_map: RadiusMap, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:
     """A spring to one surface of the bone for every ray beside the hole that meets it, of unit strength per mm2.
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
     radius : ndarray, shape (M, M)
         The vault's outer or inner radii.
     spans : tuple of int
@@ -183,58 +187,68 @@ def springs_to(vault: RadiusMap, radius: NDArray[np.float64], spans: tuple[int, 
     Springs
         To points in mm along the map's axes from the head's centre.
     """
-    known = np.isfinite(radius) & ~vault.hole
-    points = (vault.grid.directions[known] * radius[known][:, None]) @ vault.grid.axes.T
+    # points of the bone along the map's axes; each pulls the parameters of its own ray
+    known = np.isfinite(radius) & ~radius_map.hole
+    points = (radius_map.grid.directions[known] * radius[known][:, None]) @ radius_map.grid.axes.T
+    # ray index -> parameter: the sheet's spans cover the map from edge to edge
     v, u = (i * n / (len(radius) - 1) for i, n in zip(np.nonzero(known), spans, strict=True))
-    return Springs(points, v, u, np.full(len(points), vault.step_mm**2))
+    return Springs(points, v, u, np.full(len(points), radius_map.step_mm**2))
 
 
-def radii_of(one: Sheet, vault: RadiusMap) -> NDArray[np.float64]:
+def radii_of(one: Sheet, radius_map: RadiusMap) -> NDArray[np.float64]:
     """Radius of a sheet along every ray into the hole or near it, shape (M, M), mm; nan elsewhere.
 
     Parameters
     ----------
     one : Sheet
-        In mm along the chart's axes from its eye.
-    vault : RadiusMap
+        In mm along the map's axes from the head centre.
+    radius_map : RadiusMap
 
     Returns
     -------
     ndarray, shape (M, M)
         mm.
     """
-    near = ndimage.binary_dilation(vault.hole, iterations=3)
+    # parameters and rays are not the same: the ray v, u may meet the sheet at other parameters
+    near = ndimage.binary_dilation(radius_map.hole, iterations=3)
     wanted = np.argwhere(near).astype(float)
-    scale = np.array(one.spans) / (len(vault.outer) - 1)
+    scale = np.array(one.spans) / (len(radius_map.outer) - 1)
     at = wanted
+    # fixed-point iteration: the point at some parameters lies on a ray; move by what that ray is off
     for _ in range(_FIND_STEPS):
         points = one.at(*(at * scale).T)
-        at = np.clip(at + wanted - vault.grid.locate(points @ vault.grid.axes).T, 0, len(vault.outer) - 1)
-    radius = np.full(vault.hole.shape, np.nan)
+        at = np.clip(
+            at + wanted - radius_map.grid.locate(points @ radius_map.grid.axes).T, 0, len(radius_map.outer) - 1
+        )
+    radius = np.full(radius_map.hole.shape, np.nan)
     radius[near] = np.linalg.norm(one.at(*(at * scale).T), axis=1)
     return radius
 
 
-def _sphere(points: NDArray[np.float64], vault: RadiusMap, spans: tuple[int, int]) -> Sheet:
+def _sphere(points: NDArray[np.float64], radius_map: RadiusMap, spans: tuple[int, int]) -> Sheet:
     """The sheet on the sphere that best fits points around the hole, each ray at its own place."""
+    # |p - c|^2 = r^2 is linear in c and r^2 - |c|^2
     system = np.column_stack([2 * points, np.ones(len(points))])
     squares, weight = (points**2).sum(axis=1), np.ones(len(points))
+    # Cauchy's weights: a ridge or a dent does not move the sphere
     for _ in range(_SPHERE_ROUNDS):
         x = np.linalg.lstsq(system * weight[:, None], squares * weight, rcond=None)[0]
         radius = np.sqrt(x[3] + x[:3] @ x[:3])
         off = np.abs(np.linalg.norm(points - x[:3], axis=1) - radius)
         weight = 1 / (1 + (off / (3 * np.median(off) + 1e-6)) ** 2)
-    along = vault.grid.directions @ vault.grid.axes.T
+    # where each ray leaves that sphere: t = d c + sqrt((d c)^2 + r^2 - |c|^2)
+    along = radius_map.grid.directions @ radius_map.grid.axes.T
     middle = along @ x[:3]
     away = middle + np.sqrt(np.maximum(middle**2 + x[3], 0.0))
+    # a sheet through all these points with next to no bending
     v, u = np.indices(away.shape).reshape(2, -1) * np.array(spans)[:, None] / (len(away) - 1)
     springs = Springs((along * away[..., None]).reshape(-1, 3), v, u, np.ones(away.size))
     return sheet.settle(springs, sheet.flat(spans), Material((0.0, 0.0, 1e-6, 1e-6, 1e-6)))[0]
 
 
-def _inside(vault: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
+def _inside(radius_map: RadiusMap, radius: NDArray[np.float64]) -> NDArray[np.float64]:
     """A radius map with nan outside the hole."""
-    return np.where(vault.hole, radius, np.nan)
+    return np.where(radius_map.hole, radius, np.nan)
 
 
 def _entries(made: Sheets) -> list[dict[str, Any]]:

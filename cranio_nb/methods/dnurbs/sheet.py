@@ -72,6 +72,7 @@ class Sheet:
         ndarray, shape (k, 3)
             In the frame of the control points, mm.
         """
+        # numerator and denominator of the rational surface
         values = tensor(v, u, self.spans, VALUE)
         weights = self.weights.ravel()
         return (values @ (self.control.reshape(-1, 3) * weights[:, None])) / (values @ weights)[:, None]
@@ -106,6 +107,7 @@ class Material:
         -------
         Material
         """
+        # derivatives by parameters are those by mm times the span's length, and an area element is v u
         v, u = span
         bends = (rigidity / v**4, 2 * rigidity / (v * u) ** 2, rigidity / u**4)
         return cls(tuple(v * u * x for x in (tension / v**2, tension / u**2, *bends)))  # type: ignore[arg-type]
@@ -147,8 +149,10 @@ def basis(x: NDArray[np.float64], spans: int, derivative: int = 0) -> sparse.csr
     -------
     sparse array, shape (k, spans + 3)
     """
+    # clamped: the end knots repeat, so that the sheet ends at its outer control points
     knots = np.concatenate([np.zeros(_DEGREE), np.arange(spans + 1.0), np.full(_DEGREE, spans)])
     splines = None
+    # B'_i = p (B_i / (t_i+p - t_i) - B_i+1 / (t_i+p+1 - t_i+1)) of one degree less, as often as asked
     for degree in range(_DEGREE, _DEGREE - derivative, -1):
         width = knots[degree + 1 : -1] - knots[1 : -degree - 1]
         n = len(width)
@@ -177,6 +181,7 @@ def tensor(
     -------
     sparse array, shape (k, n m)
     """
+    # row by row the outer product of two sparse rows
     along_v, along_u = (basis(x, n, d) for x, n, d in zip((v, u), spans, derivative, strict=True))
     rows = np.repeat(np.arange(len(v)), np.diff(along_v.indptr))
     right = along_u[rows]  # a copy of the row along u for every entry along v
@@ -218,6 +223,7 @@ def stiffness(spans: tuple[int, int], material: Material) -> sparse.csr_array:
     -------
     sparse array, shape (n m, n m)
     """
+    # int B^(d) B^(d) dv times int B^(e) B^(e) du: a Kronecker product for each strain
     grams = [_grams(n) for n in spans]
     total = sparse.csr_array((grams[0][0].shape[0] * grams[1][0].shape[0],) * 2)
     for factor, (d, e) in zip(material.stiffness, STRAINS, strict=True):
@@ -227,6 +233,7 @@ def stiffness(spans: tuple[int, int], material: Material) -> sparse.csr_array:
 
 def _grams(spans: int) -> list[sparse.csr_array]:
     """Integrals of the products of B-splines, of their first and of their second derivatives."""
+    # Gauss quadrature, exact for these polynomials
     x, w = gauss(spans)
     parts = [basis(x, spans, d) for d in range(3)]
     return [sparse.csr_array(part.T @ sparse.diags_array(w) @ part) for part in parts]
@@ -252,15 +259,18 @@ def settle(springs: Springs, natural: Sheet, material: Material, *, rounds: int 
     springs : Springs
         With their last strengths.
     """
+    # unknown is the change t = s - s0: no bending at t = 0
     places = tensor(springs.v, springs.u, natural.spans, VALUE)
     bent, rest = stiffness(natural.spans, material), natural.control.reshape(-1, 3)
     pulled, strength = springs.points - places @ rest, springs.strength
     change = _solved(places, strength, bent, pulled)
+    # Cauchy's weights: a spring to a suture or a ridge is weakened, never cut
     for _ in range(rounds):
         off = np.linalg.norm(pulled - places @ change, axis=1)
         limit = max(3 * 1.4826 * float(np.median(off)), _LEAST_DOUBT)
         strength = springs.strength / (1 + (off / limit) ** 2)
         change = _solved(places, strength, bent, pulled)
+    # the natural shape plus what the springs change of it
     control = (rest + change).reshape(natural.control.shape)
     return Sheet(control, np.ones_like(natural.weights)), replace(springs, strength=strength)
 
@@ -286,5 +296,6 @@ def _solved(
     places: sparse.csr_array, strength: NDArray, bent: sparse.csr_array, pulled: NDArray
 ) -> NDArray[np.float64]:
     """Control points, shape (n m, 3), that balance springs and bending."""
+    # (K + P^T k P) t = P^T k d: the energy's slope is zero
     pull = places.T @ sparse.diags_array(strength)
     return np.asarray(spsolve(sparse.csc_array(bent + pull @ places), pull @ pulled, permc_spec="MMD_AT_PLUS_A"))

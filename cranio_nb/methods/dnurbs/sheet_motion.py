@@ -25,9 +25,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from .sheet import BY_U, BY_UU, BY_V, BY_VU, BY_VV, STRAINS, VALUE, Material, Sheet, Springs, gauss, tensor
-
-Pair = tuple[int, int]
+from .sheet import STRAINS, VALUE, Material, Sheet, Springs, gauss
+from .sheet_derivatives import Pair, derivatives, jacobians, rational_basis, spline_products
 
 _LIGHTEST = 0.05  # a weight may not fall below
 _SHORTEST = 1e-6  # part of its time to which a step is shortened before the sheet counts as being at rest
@@ -74,6 +73,28 @@ class Setting:
 
 
 @dataclass(frozen=True, eq=False)
+class Quadrature:
+    """What the sums of the energy need of a setting, whatever the sheet's place.
+
+    Parameters
+    ----------
+    weight : ndarray, shape (k,)
+        Of the Gauss points.
+    splines : dict
+        (times by v, times by u) -> products of the B-splines at the Gauss points, sparse, shape (k, n m).
+    natural : dict
+        (times by v, times by u) -> the natural shape at the Gauss points, shape (k, 3), mm.
+    at_springs : dict
+        (0, 0) -> products of the B-splines at the springs.
+    """
+
+    weight: NDArray[np.float64]
+    splines: dict[Pair, sparse.csr_array]
+    natural: dict[Pair, NDArray[np.float64]]
+    at_springs: dict[Pair, sparse.csr_array]
+
+
+@dataclass(frozen=True, eq=False)
 class Motion:
     """A sheet on its way.
 
@@ -101,6 +122,34 @@ class Motion:
     converged: bool = False
 
 
+@dataclass(frozen=True, eq=False)
+class _Forces:
+    """What acts on a sheet at its place: the integral of J^T J, the stiffness of sheet and springs, and their force."""
+
+    matter: sparse.csr_array
+    elastic: sparse.csr_array
+    force: NDArray[np.float64]
+
+
+def quadrature(setting: Setting) -> Quadrature:
+    """Prepare the sums of the energy over the Gauss points of all spans and over the springs.
+
+    Parameters
+    ----------
+    setting : Setting
+
+    Returns
+    -------
+    Quadrature
+    """
+    natural, springs = setting.natural, setting.springs
+    (v, by_v), (u, by_u) = (gauss(n) for n in natural.spans)
+    splines = spline_products(np.repeat(v, len(u)), np.tile(u, len(v)), natural.spans)
+    shape = derivatives(natural, rational_basis(natural.weights, splines))
+    at_springs = spline_products(springs.v, springs.u, natural.spans, (VALUE,))
+    return Quadrature(np.outer(by_v, by_u).ravel(), splines, shape, at_springs)
+
+
 def start(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> Motion:
     """The motion of a sheet at its beginning, without speed.
 
@@ -116,7 +165,7 @@ def start(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> Motion:
     Motion
     """
     still = np.zeros(len(_coordinates(sheet, dynamics.free_weights)))
-    return Motion(sheet, still, potential(sheet, setting, dynamics))
+    return Motion(sheet, still, potential(sheet, setting, dynamics, quadrature(setting)))
 
 
 def relax(
@@ -149,9 +198,12 @@ def relax(
     Motion
         `converged` says whether it came to rest.
     """
+    sums = quadrature(setting)
+    forces = _forces(motion.sheet, setting, dynamics, sums)
     for _ in range(max_iter):
-        motion = step(motion, setting, dynamics)
-        rests = motion.moved <= tol and (motion.moved == 0 or _left(motion.sheet, setting, dynamics) <= tol)
+        motion = _step(motion, forces, setting, dynamics, sums)
+        forces = _forces(motion.sheet, setting, dynamics, sums)
+        rests = motion.moved <= tol and (motion.moved == 0 or _left(motion.sheet, forces, dynamics) <= tol)
         motion = replace(motion, converged=rests)
         if iter_callback is not None:
             iter_callback(motion)
@@ -160,46 +212,7 @@ def relax(
     return motion
 
 
-def step(motion: Motion, setting: Setting, dynamics: Dynamics) -> Motion:
-    """One step of the motion, shortened where it must be.
-
-    Parameters
-    ----------
-    motion : Motion
-    setting, dynamics
-        What acts on it.
-
-    Returns
-    -------
-    Motion
-    """
-    sheet, free = motion.sheet, dynamics.free_weights
-    matter, elastic, force = _forces(sheet, setting, dynamics)
-    q, velocity, dt = _coordinates(sheet, free), motion.velocity, dynamics.dt
-    while dt > _SHORTEST * dynamics.dt:
-        inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * matter
-        push = force + (dynamics.mass / dt) * (matter @ velocity)
-        change = spsolve(sparse.csc_array(inertia + elastic), push, permc_spec="MMD_AT_PLUS_A")
-        new = _with_coordinates(sheet, q + change, free)
-        if new.weights.min() > _LIGHTEST:
-            speed = change / dt
-            energy = potential(new, setting, dynamics) + dynamics.mass / 2 * float(speed @ (matter @ speed))
-            if energy <= motion.energy * (1 + 1e-12):
-                moved = float(np.linalg.norm(new.control - sheet.control, axis=-1).max())
-                return Motion(new, speed, energy, moved, motion.n_iter + 1)
-        velocity, dt = np.zeros_like(velocity), dt / 2
-    return replace(motion, moved=0.0, n_iter=motion.n_iter + 1)
-
-
-def _left(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
-    """Farthest way of a control point to where elastic forces and springs are even."""
-    _, elastic, force = _forces(sheet, setting, dynamics)
-    change = spsolve(sparse.csc_array(elastic), force, permc_spec="MMD_AT_PLUS_A")
-    even = _with_coordinates(sheet, _coordinates(sheet, dynamics.free_weights) + change, dynamics.free_weights)
-    return float(np.linalg.norm(even.control - sheet.control, axis=-1).max())
-
-
-def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
+def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> float:
     """Elastic energy of a sheet and of the springs.
 
     Parameters
@@ -207,15 +220,16 @@ def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
     sheet : Sheet
     setting : Setting
     dynamics : Dynamics
+    sums : Quadrature
+        Of the setting.
 
     Returns
     -------
     float
     """
-    v, u, weight = _quadrature(sheet)
-    shape, natural, springs = derivatives(sheet, v, u), derivatives(setting.natural, v, u), setting.springs
+    shape, springs = derivatives(sheet, rational_basis(sheet.weights, sums.splines)), setting.springs
     elastic = sum(
-        factor * float(weight @ ((shape[d] - natural[d]) ** 2).sum(axis=1))
+        factor * float(sums.weight @ ((shape[d] - sums.natural[d]) ** 2).sum(axis=1))
         for factor, d in zip(setting.material.stiffness, STRAINS, strict=True)
     )
     pulled = float(springs.strength @ ((springs.points - sheet.at(springs.v, springs.u)) ** 2).sum(axis=1))
@@ -223,125 +237,60 @@ def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> float:
     return (elastic + pulled + held) / 2
 
 
-def derivatives(sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64]) -> dict[Pair, NDArray[np.float64]]:
-    """The surface and its derivatives up to the second.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    v, u : ndarray, shape (k,)
-        Parameters.
-
-    Returns
-    -------
-    dict
-        (times by v, times by u) -> ndarray, shape (k, 3).
-    """
-    points = sheet.control.reshape(-1, 3) * sheet.weights.reshape(-1, 1)
-    return {d: part @ points for d, part in _quotients(sheet, v, u, tuple(_SHARES)).items()}
-
-
-def jacobians(
-    sheet: Sheet, v: NDArray[np.float64], u: NDArray[np.float64], free_weights: bool, *, strains: bool = True
-) -> dict[Pair, sparse.csr_array]:
-    """J, the surface by its coordinates q, and its derivatives along v and u.
-
-    The coordinates q are all x of the control points, all y, all z, then all weights if those are free.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    v, u : ndarray, shape (k,)
-        Parameters.
-    free_weights : bool
-        Whether the weights are coordinates too.
-    strains : bool
-        Whether to give the derivatives too.
-
-    Returns
-    -------
-    dict
-        (times by v, times by u) -> sparse array, shape (3 k, q): rows of x, y, z one below the other.
-    """
-    quotients = _quotients(sheet, v, u, tuple(_SHARES) if strains else (VALUE,))
-    weights, points = sheet.weights.ravel(), sheet.control.reshape(-1, 3)
-    shape = {d: part @ (points * weights[:, None]) for d, part in quotients.items()}
-    found = {}
-    for d, part in quotients.items():
-        by_point = sparse.block_diag([part @ sparse.diags_array(weights)] * 3, format="csr")
-        if free_weights:
-            by_weight = sparse.vstack([_by_weight(quotients, shape, points, d, axis) for axis in range(3)])
-            by_point = sparse.hstack([by_point, by_weight], format="csr")
-        found[d] = sparse.csr_array(by_point)
-    return found
+def _step(motion: Motion, forces: _Forces, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> Motion:
+    """One step of the motion under the forces at its place, shortened where it must be."""
+    sheet, free = motion.sheet, dynamics.free_weights
+    q, velocity, dt = _coordinates(sheet, free), motion.velocity, dynamics.dt
+    while dt > _SHORTEST * dynamics.dt:
+        # (M / dt^2 + D / dt + K) dq = f + M q' / dt
+        inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * forces.matter
+        push = forces.force + (dynamics.mass / dt) * (forces.matter @ velocity)
+        change = spsolve(sparse.csc_array(inertia + forces.elastic), push, permc_spec="MMD_AT_PLUS_A")
+        new = _with_coordinates(sheet, q + change, free)
+        if new.weights.min() > _LIGHTEST:
+            speed = change / dt
+            motion_energy = dynamics.mass / 2 * float(speed @ (forces.matter @ speed))
+            energy = potential(new, setting, dynamics, sums) + motion_energy
+            if energy <= motion.energy * (1 + 1e-12):
+                moved = float(np.linalg.norm(new.control - sheet.control, axis=-1).max())
+                return Motion(new, speed, energy, moved, motion.n_iter + 1)
+        # too far: from rest again with half the time
+        velocity, dt = np.zeros_like(velocity), dt / 2
+    return replace(motion, moved=0.0, n_iter=motion.n_iter + 1)
 
 
-def _by_weight(
-    quotients: dict[Pair, sparse.csr_array], shape: dict[Pair, NDArray], points: NDArray, d: Pair, axis: int
-) -> sparse.csr_array:
-    """A derivative of ds/dw_i = (p_i - s) Q_i along one axis, by the product rule, shape (k, n m)."""
-    total = quotients[d] @ sparse.diags_array(points[:, axis])
-    for (i, j), times in _SHARES[d].items():
-        total = total - times * sparse.diags_array(shape[i, j][:, axis]) @ quotients[d[0] - i, d[1] - j]
-    return sparse.csr_array(total)
+def _left(sheet: Sheet, forces: _Forces, dynamics: Dynamics) -> float:
+    """Farthest way of a control point to where elastic forces and springs are even."""
+    change = spsolve(sparse.csc_array(forces.elastic), forces.force, permc_spec="MMD_AT_PLUS_A")
+    even = _with_coordinates(sheet, _coordinates(sheet, dynamics.free_weights) + change, dynamics.free_weights)
+    return float(np.linalg.norm(even.control - sheet.control, axis=-1).max())
 
 
-_SHARES: dict[Pair, dict[Pair, int]] = {
-    VALUE: {VALUE: 1},
-    BY_V: {VALUE: 1, BY_V: 1},
-    BY_U: {VALUE: 1, BY_U: 1},
-    BY_VV: {VALUE: 1, BY_V: 2, BY_VV: 1},
-    BY_VU: {VALUE: 1, BY_V: 1, BY_U: 1, BY_VU: 1},
-    BY_UU: {VALUE: 1, BY_U: 2, BY_UU: 1},
-}
-"""Leibniz: a derivative of a product sums these derivatives of one factor, so often, with the rest of the other."""
-
-
-def _quotients(sheet: Sheet, v: NDArray, u: NDArray, kinds: tuple[Pair, ...]) -> dict[Pair, sparse.csr_array]:
-    """Q_i = B_i / W with W = sum w B, and its derivatives, shape (k, n m): from the product rule for B = Q W."""
-    weights = sheet.weights.ravel()
-    found: dict[Pair, sparse.csr_array] = {}
-    products = {d: tensor(v, u, sheet.spans, d) for d in kinds}
-    below = {d: part @ weights for d, part in products.items()}
-    for d in kinds:
-        total = products[d]
-        for (i, j), times in _SHARES[d].items():
-            if (i, j) != VALUE:
-                total = total - times * sparse.diags_array(below[i, j]) @ found[d[0] - i, d[1] - j]
-        found[d] = sparse.csr_array(sparse.diags_array(1 / below[VALUE]) @ total)
-    return found
-
-
-def _forces(
-    sheet: Sheet, setting: Setting, dynamics: Dynamics
-) -> tuple[sparse.csr_array, sparse.csr_array, NDArray[np.float64]]:
-    """Integral of J^T J; the stiffness of the sheet and the springs; and the force of both at the sheet's place."""
+def _forces(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> _Forces:
+    """Inertia, stiffness and force of a sheet and its springs at the sheet's place."""
     free, springs = dynamics.free_weights, setting.springs
-    v, u, weight = _quadrature(sheet)
-    parts = jacobians(sheet, v, u, free)
-    shape, natural = derivatives(sheet, v, u), derivatives(setting.natural, v, u)
-    pull = jacobians(sheet, springs.v, springs.u, free, strains=False)[VALUE]
+    # the springs
+    at_springs = rational_basis(sheet.weights, sums.at_springs)
+    pull = jacobians(sheet, at_springs, free_weights=free)[VALUE]
     strength = np.tile(springs.strength, 3)
     elastic = pull.T @ sparse.diags_array(strength) @ pull
     force = pull.T @ (strength * (springs.points - sheet.at(springs.v, springs.u)).T.ravel())
+    # the sheet itself, against its natural shape
+    basis = rational_basis(sheet.weights, sums.splines)
+    parts, shape = jacobians(sheet, basis, free_weights=free), derivatives(sheet, basis)
     for factor, d in zip(setting.material.stiffness, STRAINS, strict=True):
-        elastic = elastic + factor * _gram(parts[d], weight)
-        force = force - factor * (parts[d].T @ (weight * (shape[d] - natural[d]).T).ravel())
+        elastic = elastic + factor * _gram(parts[d], sums.weight)
+        force = force - factor * (parts[d].T @ (sums.weight * (shape[d] - sums.natural[d]).T).ravel())
+    # what holds free weights at 1
     if free:
         held = np.repeat([0.0, dynamics.hold], [3 * sheet.weights.size, sheet.weights.size])
         force = force - held * (_coordinates(sheet, True) - 1)
         elastic = elastic + sparse.diags_array(held)
-    return _gram(parts[VALUE], weight), sparse.csr_array(elastic), force
+    return _Forces(_gram(parts[VALUE], sums.weight), sparse.csr_array(elastic), force)
 
 
 def _gram(part: sparse.csr_array, weight: NDArray) -> sparse.csr_array:
     return sparse.csr_array(part.T @ sparse.diags_array(np.tile(weight, 3)) @ part)
-
-
-def _quadrature(sheet: Sheet) -> tuple[NDArray, NDArray, NDArray]:
-    """Gauss points of all spans and their weights, shape (k,) each."""
-    (v, by_v), (u, by_u) = (gauss(n) for n in sheet.spans)
-    return np.repeat(v, len(u)), np.tile(u, len(v)), np.outer(by_v, by_u).ravel()
 
 
 def _coordinates(sheet: Sheet, free_weights: bool) -> NDArray[np.float64]:

@@ -44,12 +44,15 @@ def bridge(
     made : SlicedDesign
     voxels : ndarray of bool, shape (P, R, C)
     """
+    # an opening's sheet is coarse: its rim may lie a plane or two beyond it
     first, end = opening.planes
     planes = range(max(first - _BESIDE, 0), min(end + _BESIDE, bone.shape[0]))
     at = slice(planes.start, planes.stop)
+    # stages 2 and 3 of the paper for every plane: gap ends, then both balloons of each gap
     ends = by_skeleton(bone.voxels[at], opening.sheet.voxels[at], skip_px=skip_px, reach_px=reach_px)
     balloons = inflate.inflate(ends, bone.to_voxel(opening.head_centre)[1:], settings)
     results = inflate.carry(within_image(balloons, (bone.shape[1], bone.shape[2])))
+    # stage 4: what lies between the curves and off the bone
     px = float(bone.spacing[1:].mean())
     voxels = np.zeros(bone.shape, bool)
     voxels[at] = _filled(results, bone.voxels[at], opening.sheet.voxels[at], px)
@@ -76,10 +79,12 @@ def by_skeleton(
     results = []
     for plane in range(len(bone)):
         try:
+            # a ring without a gap is a partial loss: its dent is filled up to the hull (Fig. 6)
             features = feature_extraction.extract_features(bone[plane])
             if features.closed:
                 results.append(SliceResult(plane, "hull", "closed ring"))
                 continue
+            # else a balloon is to bridge from end to end; what cannot be fitted leaves its slice to the neighbours
             ends = feature_extraction.find_gap_ends(features, opening[plane], skip_px=skip_px, reach_px=reach_px)
             results.append(SliceResult(plane, "balloon", ends=ends))
         except feature_extraction.SliceProblem as problem:
@@ -117,6 +122,7 @@ def _filled(
 ) -> NDArray[np.bool_]:
     """Every slice filled between its curves, or up to its hull, shape (P, R, C)."""
     voxels = np.zeros(bone.shape, bool)
+    # a hull spans every dent of the skull: only dents by the opening are wanted
     near = ndimage.binary_dilation(opening.any(axis=0), iterations=int(np.ceil(_NEAR / px)))
     for s in results:
         if s.status == "hull":

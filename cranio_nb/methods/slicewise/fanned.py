@@ -53,25 +53,27 @@ def bridge(
         One for each direction.
     voxels : ndarray of bool, shape (P, R, C)
     """
-    vault = radius_measurement.measure_around(bone, opening)
+    radius_map = radius_measurement.measure_around(bone, opening)
     made, radii, weights = [], [], []
-    for fan in slicing.fans(vault, directions):
+    for fan in slicing.fans(radius_map, directions):
         # curves of this direction, and their radii and weights on the map's own rays
-        profile = slicing.profile(vault, fan)
+        profile = slicing.profile(radius_map, fan)
         ends = by_rays(profile, skip_mm=skip_mm, reach_mm=reach_mm, coupling_mm=coupling_mm)
         results = inflate.carry(inflate.inflate(ends, np.zeros(2), settings))
-        made.append(SlicedDesign(opening, fan.frames(vault.grid.centre), 1.0, results))
-        at = fan.locate(vault.grid.directions[vault.hole])
+        made.append(SlicedDesign(opening, fan.frames(radius_map.grid.centre), 1.0, results))
+        at = fan.locate(radius_map.grid.directions[radius_map.hole])
+        # all directions are compared on the same rays, those of the radius map into the hole
         both = [_on_rays(results, boundary, profile) for boundary in (0, 1)]
         radii.append([ndimage.map_coordinates(r, at, order=1, cval=np.nan) for r, _ in both])
         weights.append([ndimage.map_coordinates(w, at, order=1, cval=0.0) for _, w in both])
     # the mean of all directions, by their certainty
-    outer, inner = np.full((2, *vault.hole.shape), np.nan)
-    outer[vault.hole], inner[vault.hole] = _weighted_mean(np.array(radii), np.array(weights))
+    outer, inner = np.full((2, *radius_map.hole.shape), np.nan)
+    outer[radius_map.hole], inner[radius_map.hole] = _weighted_mean(np.array(radii), np.array(weights))
     if not np.isfinite(outer).any():
         return tuple(made), np.zeros(bone.shape, bool)
-    outer, inner = radius_voxels.thickened(vault, outer=outer, inner=inner)
-    return tuple(made), radius_voxels.voxels_between(vault, bone, outer=outer, inner=inner)
+    # the two means are independent: where they come too close they are moved apart
+    outer, inner = radius_voxels.thickened(radius_map, outer=outer, inner=inner)
+    return tuple(made), radius_voxels.voxels_between(radius_map, bone, outer=outer, inner=inner)
 
 
 def by_rays(profile: RayProfile, *, skip_mm: float, reach_mm: float, coupling_mm: float) -> list[SliceResult]:
@@ -91,10 +93,13 @@ def by_rays(profile: RayProfile, *, skip_mm: float, reach_mm: float, coupling_mm
     list of SliceResult
         One for each slice that crosses the hole.
     """
-    fits = fit_rims(profile, skip=skip_mm, reach=reach_mm)
+    # position and tangent of each rim by itself, then the tangents of neighbours evened out
+    fits = fit_rims(profile, skip_mm=skip_mm, reach_mm=reach_mm)
     tangents = share_tangents(fits.tangents, coupling_mm)  # 1 mm is one slice
+    # how much the rim bends is noisy too: its median over the same neighbours
     turns = ndimage.median_filter(np.nan_to_num(fits.turns, nan=1.0), size=(2 * round(coupling_mm) + 1, 1, 1))
     results = []
+    # a slice is bridged only when all four tangents (two boundaries, two ends) are known
     for plane in np.flatnonzero(profile.missing.any(axis=1)):
         if np.isfinite(tangents[plane]).all():
             ends = tuple(GapEnds(fits.points[plane, b], tangents[plane, b]) for b in (0, 1))

@@ -74,6 +74,7 @@ def carry(slices: Sequence[SliceResult]) -> tuple[SliceResult, ...]:
     -------
     tuple of SliceResult
     """
+    # bridged slices below and above each skipped one; without both, nothing is extrapolated
     known = np.array([s.plane for s in slices if s.curves.size])
     curves = {s.plane: s.curves for s in slices if s.curves.size}
     out = []
@@ -82,6 +83,7 @@ def carry(slices: Sequence[SliceResult]) -> tuple[SliceResult, ...]:
         if s.status != "skipped" or not len(below) or not len(above):
             out.append(s)
             continue
+        # linear between them, snaxel by snaxel: curves of one design have equally many
         a, b = int(below[-1]), int(above[0])
         t = (s.plane - a) / (b - a)
         out.append(replace(s, status="carried", curves=(1 - t) * curves[a] + t * curves[b]))

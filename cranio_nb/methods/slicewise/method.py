@@ -38,6 +38,7 @@ def paper_options(bone: Volume) -> dict[str, Any]:
     -------
     dict
     """
+    # the skip is the paper's length in mm; k and the reach are counts of this scan's pixels
     px = float(bone.spacing[1:].mean())
     return {
         "axial": True,
@@ -75,10 +76,8 @@ def pieces(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     axial : bool
         As the paper: the planes of the scan, features by skeleton and convex hull.
         Otherwise fans of planes from inside the head, features along rays.
@@ -103,6 +102,7 @@ def pieces(
         The record's `slices` hold one entry per slice: direction, plane, status, reason, angles, lengths, iterations,
         convergence. `working` holds a `SlicedDesign` per direction.
     """
+    # the balloon's k is a length per index squared, so that it changes with the unit of the slices
     unit = float(bone.spacing[1:].mean()) if axial else 1.0  # mm per unit of the slices
     pressure = None if pressure_mm is None else pressure_mm / unit
     settings = Settings(n_snaxels, pressure, tension, rigidity, dt, tol, max_iter)

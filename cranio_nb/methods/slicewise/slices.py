@@ -115,6 +115,7 @@ class SliceResult:
         dict
             plane, status, reason, and those of `Inflation.record`.
         """
+        # a slice without a balloon has no angles and no iterations to record
         facts = {"plane": self.plane, "status": self.status, "reason": self.reason}
         return facts if self.inflation is None else facts | self.inflation.record()
 

@@ -81,12 +81,15 @@ def even(loop: Loop, step: float, smooth: float) -> Loop:
     -------
     Loop
     """
+    # even steps of arc length around the closed loop
     closed = np.concatenate([loop.points, loop.points[:1]])
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
     n = max(round(float(along[-1]) / step), 8)
     at = np.arange(n) * along[-1] / n
     points = np.stack([np.interp(at, along, coordinate) for coordinate in closed.T], axis=1)
+    # smoothed along the loop; sigma in points
     points = ndimage.gaussian_filter1d(points, smooth * n / along[-1], axis=0, mode="wrap")
+    # stations at the new points, and the loop turned so that they rise from its first
     stations = np.interp(at, along, np.append(loop.stations, loop.stations[0] + loop.turn)) % loop.turn
     first = -int(np.argmin(stations))
     return Loop(np.roll(points, first, axis=0), np.roll(stations, first), loop.turn)
@@ -119,21 +122,25 @@ def span(
     InputRefused
         ``TangledRim`` if the loop crosses itself seen along the normal.
     """
+    # the loop in the frame of its plane, and the triangles inside it
     axes = plane_axes(loop, normal)
     flat_loop = (loop - loop.mean(axis=0)) @ axes.T
     flat, faces = _triangles(flat_loop[:, :2], step)
+    # iteratively reweighted harmonic problems; the first has weights |T|
     gradients, sizes = _gradients(flat, faces)
     height, areas, converged = np.append(flat_loop[:, 2], np.zeros(len(flat) - len(loop))), [], False
     weight = sizes
     for _ in range(max_iter + 1):
         new = _harmonic(gradients, weight, height, len(loop))
         change, height = np.abs(new - height).max(), new
+        # area = sum |T| sqrt(1 + |grad h|^2), and the next weights |T| / sqrt(...)
         stretch = np.sqrt(1 + sum((g @ height) ** 2 for g in gradients))
         areas.append(float(sizes @ stretch))
         weight = sizes / stretch
         if len(areas) > 1 and change <= tol:
             converged = True
             break
+    # back to space; the loop keeps its exact points
     vertices = np.column_stack([flat, height]) @ axes + loop.mean(axis=0)
     return Membrane(Mesh(np.concatenate([loop, vertices[len(loop) :]]), faces), tuple(areas), converged)
 
@@ -174,10 +181,13 @@ def wall(outer: Loop, inner: Loop) -> NDArray[np.intp]:
     ndarray of int, shape (n + m, 3)
         Faces.
     """
+    # both loops merged by station: each step along either makes one triangle
     n, m = len(outer.points), len(inner.points)
     is_outer = np.arange(n + m) < n
     order = np.argsort(np.concatenate([outer.stations, inner.stations]), kind="stable")
+    # last point passed on each loop at every step
     o, i = ((np.cumsum(one[order]) - 1) for one in (is_outer, ~is_outer))
+    # a step on one loop joins its edge to the point waiting on the other
     step_out = np.stack([o, o - 1, n + i % m], axis=1)
     step_in = np.stack([n + (i - 1) % m, n + i % m, o], axis=1)
     faces = np.where(is_outer[order][:, None], step_out, step_in)
@@ -196,9 +206,11 @@ def stitched(outer: Membrane, inner: Membrane, outer_rim: Loop, inner_rim: Loop)
     -------
     Mesh
     """
+    # vertices: the outer membrane's, then the inner one's, whose first m are its rim
     n, rim, m = len(outer_rim.points), len(outer.mesh.vertices), len(inner_rim.points)
     side = wall(outer_rim, inner_rim)
     side = np.where(side < n, side, side - n + rim)
+    # the inner membrane is turned over: its outside is towards the brain
     faces = np.concatenate([outer.mesh.faces, side, inner.mesh.faces[:, ::-1] + rim])
     assert side.max() < rim + m
     return Mesh(np.concatenate([outer.mesh.vertices, inner.mesh.vertices]), faces)
@@ -206,14 +218,17 @@ def stitched(outer: Membrane, inner: Membrane, outer_rim: Loop, inner_rim: Loop)
 
 def _triangles(loop: NDArray, step: float) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """Points in the plane, those of the loop first, and the triangles inside the loop, counter-clockwise."""
+    # a lattice of equilateral triangles over the loop's box
     low, high = loop.min(axis=0), loop.max(axis=0)
     rows = np.arange(low[1], high[1], step * np.sqrt(0.75))
     cols = np.arange(low[0], high[0], step)
     x = cols + np.where(np.arange(len(rows)) % 2, step / 2, 0.0)[:, None]
     lattice = np.stack([x, np.broadcast_to(rows[:, None], x.shape)], axis=-1).reshape(-1, 2)
+    # lattice points inside the loop, but none so near that the loop's edges would not be Delaunay
     dense = np.concatenate([loop, (loop + np.roll(loop, -1, axis=0)) / 2])
     inner = lattice[points_in_poly(lattice, loop)]
     flat = np.concatenate([loop, inner[cKDTree(dense).query(inner)[0] > _CLEAR * step]])
+    # triangles of a hole in the loop's outline are dropped, the others wound counter-clockwise
     faces = Delaunay(flat).simplices.astype(np.intp)
     faces = faces[points_in_poly(flat[faces].mean(axis=1), loop)]
     turned = _sizes(flat[faces]) < 0
@@ -227,6 +242,7 @@ def _triangles(loop: NDArray, step: float) -> tuple[NDArray[np.float64], NDArray
 
 def _bounded_by(faces: NDArray[np.intp], n: int) -> bool:
     """Whether the open edges of a mesh are those of the loop 0, 1, ... n - 1, and no others."""
+    # an edge of one triangle only is open
     edges = np.sort(faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     kinds, count = np.unique(edges, axis=0, return_counts=True)
     wanted = np.sort(np.stack([np.arange(n), (np.arange(n) + 1) % n], axis=1), axis=1)
@@ -235,6 +251,7 @@ def _bounded_by(faces: NDArray[np.intp], n: int) -> bool:
 
 def _gradients(flat: NDArray, faces: NDArray[np.intp]) -> tuple[list[sparse.csr_array], NDArray[np.float64]]:
     """Derivatives along both axes of the plane on each triangle, shape (F, V) each, and the triangles' sizes."""
+    # on a triangle grad h = sum_k h_k (edge opposite to k, turned by 90 deg) / (2 |T|)
     corners = flat[faces]
     opposite = np.roll(corners, -2, axis=1) - np.roll(corners, -1, axis=1)
     sizes = _sizes(corners)
@@ -252,8 +269,10 @@ def _sizes(corners: NDArray) -> NDArray[np.float64]:
 
 def _harmonic(gradients: list[sparse.csr_array], weight: NDArray, height: NDArray, n_fixed: int) -> NDArray[np.float64]:
     """Heights of least sum of weight |grad h|^2, the first `n_fixed` kept."""
+    # energy = sum_T w_T |grad h|^2, a quadratic form in the heights
     scale = sparse.diags_array(weight)
     energy = sum(g.T @ scale @ g for g in gradients).tocsr()
+    # its zero slope in the free heights, with those of the loop given
     inner = slice(n_fixed, None)
     new = height.copy()
     if len(height) > n_fixed:

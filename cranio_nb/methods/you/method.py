@@ -79,10 +79,8 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, n_guides: int = 12) -> 
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull, planes rising to the top of the head.
-    openings : sequence of Opening
-        Openings to close.
+    bone, openings
+        As for `methods.design.design`.
     n_guides : int
         Guiding points around each hole, 3 at least.
 
@@ -116,6 +114,7 @@ def between_guides(bone: Volume, openings: Sequence[Opening], guides: Sequence[N
         The record's `fills` describe the outer and the inner fill; `working` holds a `Filling`.
     """
     for opening, points in zip(openings, guides, strict=True):
+        # voxels are filled only in a box around the hole, and there in one piece
         filling = fill_between(bone, opening, np.asarray(points, float))
         box = _box(bone, opening, filling.guides)
         voxels = np.zeros(bone.shape, bool)
@@ -123,12 +122,12 @@ def between_guides(bone: Volume, openings: Sequence[Opening], guides: Sequence[N
         yield Piece(voxels, (filling,), {"fills": [_entry(side) for side in (filling.outer, filling.inner)]})
 
 
-def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
+def find_guides(radius_map: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     """Points on the outer surface at even steps around a hole.
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
         The bone around the hole.
     n_guides : int
 
@@ -137,15 +136,18 @@ def find_guides(vault: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     ndarray, shape (n_guides, 3)
         World mm.
     """
-    soft = ndimage.gaussian_filter(vault.hole.astype(float), 1.5)
+    # the outline of the hole on the map, blurred over a ray or two so that it has no stairs
+    soft = ndimage.gaussian_filter(radius_map.hole.astype(float), 1.5)
     outline = max(find_contours(np.pad(soft, 1), 0.5), key=len)[:-1] - 1
+    # even steps of arc length along it
     closed = np.concatenate([outline, outline[:1]])
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
     at = np.arange(n_guides) * along[-1] / n_guides
     v, u = (np.rint(np.interp(at, along, c)).astype(int) for c in closed.T)
-    unknown = vault.hole | ~np.isfinite(vault.outer)
+    # each to the nearest ray with bone, and out along that ray to its outer surface
+    unknown = radius_map.hole | ~np.isfinite(radius_map.outer)
     v, u = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)[:, v, u]
-    return vault.grid.centre + vault.grid.directions[v, u] * vault.outer[v, u, None]
+    return radius_map.grid.centre + radius_map.grid.directions[v, u] * radius_map.outer[v, u, None]
 
 
 def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) -> Filling:
@@ -171,15 +173,19 @@ def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) ->
     """
     if len(guides) < 3:
         raise InputRefused("TooFewGuides", f"There are {len(guides)} guiding points; 3 at least are wanted.")
+    # the mesh of the defective skull, and for each vertex how far its normal points out of the head
     skull = _main_part(tetrahedra.extract(bone.crop(_box(bone, opening, guides))))
     away = skull.vertices - opening.head_centre
     radius = np.linalg.norm(away, axis=1)
     lean = np.einsum("vd,vd->v", _vertex_normals(skull), away / radius[:, None])
+    # each guide goes to the nearest vertex of the outer surface
     normal = _normal(guides, opening.direction)
     outer_at = _nearest(skull.vertices, lean > _LEANS, _counter_clockwise(guides, normal))
+    # its partner lies behind it on the inner surface: near it as seen from the head centre, at any depth
     sight = away / radius[:, None] * np.median(radius)
     seen = np.column_stack([sight, _DEPTH_COUNTS * radius])
     inner_at = _nearest(seen, lean < -_LEANS, seen[outer_at])
+    # a rim from guide to guide and a fill across it, outside and inside, then the wall between
     step = float(bone.voxel_volume ** (1 / 3))
     outer_rim, outer = _spanned(_path_loop(skull, outer_at, lean), normal, step)
     inner_rim, inner = _spanned(_path_loop(skull, inner_at, -lean), normal, step)
@@ -190,6 +196,7 @@ def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) ->
 
 def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop, Membrane]:
     """The rim along a way on the mesh, and the fill across it; smoothed no more than it takes to be spanned."""
+    # a rim with kinks may cross itself seen from outside: smooth more until it does not
     for smooth in _SMOOTH:
         rim = membrane.even(way, step, smooth)
         try:
@@ -213,6 +220,7 @@ def _entry(one: Membrane) -> dict[str, Any]:
 
 def _box(bone: Volume, opening: Opening, guides: NDArray) -> tuple[slice, slice, slice]:
     """Index box around the opening and the guides, with a margin."""
+    # voxel indices of both, with a margin in mm on every side
     index = np.concatenate([np.argwhere(opening.sheet.voxels), bone.to_voxel(guides)])
     margin = _MARGIN / bone.spacing
     low = np.maximum(np.floor(index.min(axis=0) - margin).astype(int), 0)
@@ -222,6 +230,7 @@ def _box(bone: Volume, opening: Opening, guides: NDArray) -> tuple[slice, slice,
 
 def _main_part(mesh: Mesh) -> Mesh:
     """The largest connected part: without loose bone and without the walls of the cells inside the bone."""
+    # vertices that edges join, and the part with most of them
     _, part = connected_components(_edge_graph(mesh), directed=False)
     kept = part == np.bincount(part).argmax()
     faces = mesh.faces[kept[mesh.faces[:, 0]]]
@@ -238,6 +247,7 @@ def _edge_graph(mesh: Mesh) -> sparse.csr_array:
 
 def _vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
     """Mean of the normals around each vertex, weighted by area, shape (V, 3)."""
+    # area vectors are normals times area: their sum is the weighted mean
     corners, shares = mesh.faces.ravel(), np.repeat(mesh.area_vectors, 3, axis=0)
     sums = np.stack([np.bincount(corners, share, len(mesh.vertices)) for share in shares.T], axis=1)
     return sums / np.linalg.norm(sums, axis=1, keepdims=True).clip(1e-12)
@@ -245,12 +255,14 @@ def _vertex_normals(mesh: Mesh) -> NDArray[np.float64]:
 
 def _normal(guides: NDArray, direction: NDArray) -> NDArray[np.float64]:
     """Unit normal of the plane of the guides, out of the head."""
+    # the direction in which the guides spread least
     normal = np.linalg.svd(guides - guides.mean(axis=0), full_matrices=False)[2][2]
     return normal if normal @ direction > 0 else -normal
 
 
 def _counter_clockwise(points: NDArray, normal: NDArray) -> NDArray[np.float64]:
     """A closed polygon's points so that it runs counter-clockwise seen against the normal."""
+    # the polygon's area vector, by the cross products of neighbours
     rays = points - points.mean(axis=0)
     turn = np.cross(rays, np.roll(rays, -1, axis=0)).sum(axis=0) @ normal
     return points if turn > 0 else points[::-1]
@@ -266,24 +278,29 @@ def _nearest(places: NDArray, allowed: NDArray[np.bool_], wanted: NDArray) -> ND
 
 def _path_loop(skull: Mesh, at: NDArray[np.intp], lean: NDArray[np.float64]) -> Loop:
     """Closed way through the vertices `at` along edges; stations count them."""
+    # an edge costs its length by the mean of its ends' leans: paths keep to the surface they belong to
     graph = _edge_graph(skull)
     costs = graph.tocoo()
     costs.data *= np.clip(2 / (lean[costs.row] + lean[costs.col]).clip(1e-3), 1, _DEAREST)
     graph = costs.tocsr()
     way, stations = [], []
+    # guide to guide; a vertex between guides k and k + 1 has a station between k and k + 1
     for k, (start, end) in enumerate(zip(at, np.roll(at, -1), strict=True)):
         path = _shortest_path(skull.vertices, graph, start, end)
         way += path[:-1]
         stations += list(k + np.arange(len(path) - 1) / max(len(path) - 1, 1))
+    # paths that share edges would make a loop that touches itself
     kept = _without_detours(way)
     return Loop(skull.vertices[np.array(way)[kept]], np.array(stations)[kept], float(len(at)))
 
 
 def _shortest_path(vertices: NDArray[np.float64], graph: sparse.csr_array, start: int, end: int) -> list[int]:
     """Vertices of the cheapest way between two of them; straight across where no bone joins them."""
+    # searched only in a ball around both ends: the whole skull's graph is large
     middle, apart = (vertices[start] + vertices[end]) / 2, np.linalg.norm(vertices[start] - vertices[end])
     inside = np.flatnonzero(np.linalg.norm(vertices - middle, axis=1) < apart + _MARGIN / 2)
     first, last = np.searchsorted(inside, (start, end))
+    # Dijkstra's predecessors, followed back from the end
     _, before = dijkstra(graph[inside][:, inside], indices=first, return_predecessors=True)
     path = [int(last)]
     while path[-1] != first and before[path[-1]] >= 0:
@@ -296,10 +313,12 @@ def _without_detours(way: list[int]) -> NDArray[np.intp]:
     kept: list[int] = []
     place: dict[int, int] = {}
     for position, vertex in enumerate(way):
+        # a new vertex: remember where in the kept way it stands
         if vertex not in place:
             place[vertex] = len(kept)
             kept.append(position)
             continue
+        # a vertex met before: the round since then is dropped, or all before it if that is shorter
         met = place[vertex]
         if 2 * (len(kept) - met) > len(way):
             return np.array(kept[met:])

@@ -36,7 +36,9 @@ def extract(mask: Volume) -> Mesh:
     Mesh
         Vertices midway between voxels of the two kinds; normals point out of the mask.
     """
+    # +1 in bone and -1 outside: the zero level cuts every mixed edge midway; the border is outside
     vertices, faces = march(np.pad(np.where(mask.voxels, np.float32(1), np.float32(-1)), 1, constant_values=-1))
+    # an affine that mirrors turns the winding, and with it the normals
     mirrored = np.linalg.det(mask.axes) < 0
     return Mesh(mask.to_world(vertices - 1), faces[:, ::-1].copy() if mirrored else faces)
 
@@ -56,11 +58,14 @@ def march(field: NDArray) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     faces : ndarray of int, shape (F, 3)
         Wound so that normals point out where the axes (plane, row, col) are right-handed.
     """
+    # every triangle corner is a cut edge; edges shared by tetrahedra are one vertex
     cells = _mixed_cells(field > 0)
     edges = [_cut(field, cells, walk) for walk in _WALKS]
     keys, faces = np.unique(np.concatenate(edges), return_inverse=True)
+    # key -> first corner and direction of the edge
     low = np.stack(np.unravel_index(keys // 8, field.shape), axis=1)
     step = (keys[:, None] // _BITS % 8) % 2
+    # a field that is linear on the edge is zero at f0 / (f0 - f1) of it
     here, there = field[tuple(low.T)].astype(float), field[tuple((low + step).T)].astype(float)
     return low + step * (here / (here - there))[:, None], faces.reshape(-1, 3).astype(np.intp)
 
@@ -68,6 +73,7 @@ def march(field: NDArray) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
 def _mixed_cells(inside: NDArray[np.bool_]) -> NDArray[np.int64]:
     """Flat index of the first corner of every cell that has corners of both kinds."""
     every, some = inside, inside
+    # AND and OR over the eight corners, one axis after the other
     for axis in range(3):
         first, second = [slice(None)] * 3, [slice(None)] * 3
         first[axis], second[axis] = slice(None, -1), slice(1, None)
@@ -81,11 +87,14 @@ def _cut(field: NDArray, cells: NDArray[np.int64], walk: NDArray[np.int64]) -> N
 
     The key of an edge is 8 times the flat index of its first corner, plus its direction as three bits.
     """
+    # flat indices of the four corners, and which of them are inside, as four bits
     corners = cells[:, None] + np.ravel_multi_index(tuple(walk.T), field.shape)
     case = (field.ravel()[corners] > 0) @ (1 << np.arange(4))
+    # half of the six tetrahedra are left-handed: there the winding is turned
     odd = np.linalg.det(walk[1:].astype(float)) < 0
     triangles = [np.empty((0, 3), np.int64)]
     for code, cuts in _CASES.items():
+        # an edge by its first corner and the step along it, always upwards on the walk
         hit = corners[case == code]
         for cut in cuts:
             keys = [8 * hit[:, a] + (walk[b] - walk[a]) @ _BITS for a, b in cut]
@@ -103,9 +112,11 @@ def _cases() -> dict[int, list[tuple[tuple[int, int], ...]]]:
     for a, b, c, d in permutations(range(4)):
         if np.linalg.det(np.eye(4)[[a, b, c, d]]) < 0:
             continue
+        # one corner inside: a triangle around it; three inside: the same, turned
         tip = (edge(a, b), edge(a, c), edge(a, d))
         found[1 << a] = [tip]
         found[15 - (1 << a)] = [tip[::-1]]
+        # two inside: a quadrilateral between them and the others, as two triangles
         ring = (edge(a, c), edge(a, d), edge(b, d), edge(b, c))
         found[(1 << a) + (1 << b)] = [ring[:3], (ring[0], ring[2], ring[3])]
     return found

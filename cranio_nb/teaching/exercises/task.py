@@ -60,6 +60,7 @@ def small_head() -> Case:
     """
     from data_synth import phantom_case
 
+    # read-only: one exercise cannot spoil the case of the next
     case = phantom_case("tiny")
     for array in (case.hu, case.bone, case.implant, case.affine):
         assert array is not None
@@ -136,5 +137,6 @@ def degrees_apart(answer: ArrayLike, right: ArrayLike) -> float:
     a, b = np.asarray(answer, float), np.asarray(right, float)
     if a.shape != b.shape or not np.linalg.norm(a) > 0:
         return float("inf")
+    # a line has no sign, hence the absolute value
     cosine = abs(a @ b) / np.linalg.norm(a) / np.linalg.norm(b)
     return float(np.degrees(np.arccos(min(cosine, 1.0))))

@@ -44,6 +44,7 @@ def lessons_folder(folder: Path | None = None) -> Path:
     InputRefused
         ``NoLessons`` when the tour is not there.
     """
+    # beside the working folder first, then in the checkout the package lies in
     near = (Path("notebooks"), Path(), Path(__file__).parents[3] / "notebooks")
     places = near if folder is None else (folder, folder / "notebooks")
     for place in places:
@@ -76,6 +77,7 @@ def lab_command(folder: Path, *, browser: bool = True, port: int | None = None, 
     >>> lab_command(Path("notebooks"), port=9000)[-1]
     '--ServerApp.port=9000'
     """
+    # the same Python, the package's settings, nothing above the lessons' folder
     command = [sys.executable, "-m", "jupyterlab", f"--LabApp.app_settings_dir={SETTINGS}"]
     command += [f"--ServerApp.root_dir={folder}", f"--LabApp.default_url=/lab/tree/{TOUR}"]
     command += [] if browser else ["--no-browser"]

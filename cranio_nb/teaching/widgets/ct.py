@@ -60,6 +60,7 @@ def _view(ct: Volume, plane: int, centre: float, width: float) -> View:
 
 def _draw_grey_scale(canvas: Canvas, box: tuple[float, float, float, float], low: float, high: float) -> None:
     """The grey scale of a window with HU at its ends."""
+    # a ramp of grey in a black frame, each end with its HU
     x, y, w, h = box
     ramp = np.linspace(0, 255, round(w)).astype(np.uint8)
     canvas.area((x - 1, y - 1, w + 2, h + 2), BLACK)

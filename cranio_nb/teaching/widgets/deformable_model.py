@@ -68,6 +68,7 @@ def balloon(ends: GapEnds, inside: ArrayLike, *, background: NDArray | None = No
     Panel
         Controls ``preset``, ``pressure``, ``n``, ``tension``, ``rigidity``, ``dt``, ``tol`` and ``step``.
     """
+    # one run for each setting is kept: moving only the step draws, and computes nothing
     frame = ChordFrame.of(ends, inside)
     angles = frame.end_angles(ends)
     scene = Scene(ends, frame, _background(background), px)
@@ -122,6 +123,7 @@ def record_inflation(
     -------
     Inflation
     """
+    # the stage reports each step; kept here, the slider can show any of them
     start, slopes, push = _initial(length, angles, preset, pressure, n)
     curves, change = [start], []
 
@@ -144,11 +146,13 @@ def _initial(
     length: float, angles: tuple[float, float], preset: str, pressure: float, n: int
 ) -> tuple[Points, Points, NDArray[np.float64]]:
     """Start curve, shape (n, 2), its end slopes per index, shape (2, 2), and the pressure."""
+    # an Euler spiral, and at each snaxel the k that holds its curvature
     if preset == PRESETS[2]:
         start, curvature = spiral(length, *angles, n)
         along = arc_length(start)[-1]
         heads = np.array([[np.cos(t), np.sin(t)] for t in (angles[0], angles[1] - np.pi)])
         return start, heads * along / (n - 1), stage.curvature_pressure(along, curvature)
+    # the paper's cubic: one k by hand, or the one that agrees with the end slopes
     push = stage.tangent_pressure(length, *angles, n) if preset == PRESETS[1] else np.asarray(pressure)
     slopes = np.array([[1.0, np.tan(t)] for t in angles]) * length / (n - 1)
     return cubic(length, *angles, n), slopes, push
@@ -186,6 +190,7 @@ def _background(background: NDArray | None) -> RGB | None:
 
 def _view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     """A balloon at a step; behind it its start curve, beside it its whole way."""
+    # a shorter run than the slider shows: its last step
     last = len(run.change)
     step = min(step, last)
     canvas = Canvas(_WIDTH + _CHARTS, _HEIGHT)
@@ -194,6 +199,7 @@ def _view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     state = "at rest" if step == last and run.converged else "not at rest"
     change = f"||dc|| = {run.change[step - 1]:.2g} px, " if step else ""
     k = f"k = {run.pressure.mean():.3g}" + (" on average" if np.ptp(run.pressure) > 1e-12 else "")
+    # what the numbers say: height over the chord, and k
     low, apex = run.curves[step][:, 1].min(), run.curves[step][:, 1].max()
     depth = f" and {-low:.1f} px below" if low < -0.05 else ""
     chord = f"the chord of {scene.frame.length:.1f} px"
@@ -204,6 +210,7 @@ def _view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
 
 def _draw_gap(canvas: Canvas, scene: Scene, run: Inflation, step: int) -> None:
     """The slice with ends, tangents, start curve and balloon."""
+    # the window holds the chord and room for a bulge, whichever way the gap lies in the slice
     length = scene.frame.length
     low, high = -0.3 * length, 0.6 * length
     corners = scene.frame.to_slice([[0, low], [length, low], [0, high], [length, high]])

@@ -89,6 +89,7 @@ def map_distances(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> Dista
     own, other = prosthesis.surface(side), truth.surface(side)
     if not len(own.faces) or not len(other.faces):
         raise InputRefused("EmptyMesh", "The prosthesis or the truth lacks its outer or inner side.")
+    # drawn once with mm in place of colours: the scale can then change without a new rendering
     off = mesh_distances.surface_distance(own.vertices, other)
     towards = own.area_vectors.sum(axis=0)
     px = pixel_to_fit(own, towards, VIEW - 60)
@@ -102,6 +103,7 @@ def _view(known: DistanceMap, side: str, top_mm: float, limit_mm: float) -> View
     canvas = Canvas(VIEW + _CHART, VIEW)
     put_view(canvas, coloured(known.picture, top_mm), known.px)
 
+    # distances above the scale are counted in its last bar
     high = max(top_mm, 0.2)
     counts, edges = np.histogram(np.minimum(known.distances, high), 60, (0, high))
     chart = Chart((VIEW, 20, _CHART, 300), (0, high), (0, 1.1 * counts.max()))
@@ -109,6 +111,7 @@ def _view(known: DistanceMap, side: str, top_mm: float, limit_mm: float) -> View
     chart.bars(canvas, edges, counts, SKY)
     if limit_mm <= high:
         chart.upright(canvas, limit_mm, VERMILLION, dash=(6, 4))
+    # the scale below the histogram, as wide as its axis
     x, _, width, _ = chart.area
     draw_colour_scale(canvas, (x, 360), round(width), top_mm)
 

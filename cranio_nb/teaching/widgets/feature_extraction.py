@@ -69,6 +69,7 @@ class Slices:
     """
 
     def __init__(self, bone: Volume, opening: Volume | None) -> None:
+        # 8 px more than the bone of all slices needs: features do not change, pictures are larger
         box = ndimage.find_objects(bone.voxels.any(axis=0).view(np.uint8))
         rows, cols = (slice(max(s.start - 8, 0), s.stop + 8) for s in box[0]) if box else (slice(None), slice(None))
         self.bone = bone.crop((slice(None), rows, cols))
@@ -101,6 +102,7 @@ def _view(part: Slices, plane: int, skip_mm: float, reach_mm: float) -> View:
     mask = part.bone.voxels[plane]
     window = Window.whole((0, 0, SIDE, SIDE), mask.shape)
     try:
+        # what does not depend on skip and reach is drawn once for each slice
         background, rgb, found, outside = part.background(plane)
     except stage.SliceProblem as problem:
         canvas = Canvas(SIDE + 8 + _INSET, SIDE)
@@ -108,15 +110,18 @@ def _view(part: Slices, plane: int, skip_mm: float, reach_mm: float) -> View:
         return View(canvas.array(), f"Slice {plane}: {problem}")
     canvas = background.copy()
     try:
+        # ends and tangents at this skip and reach; a slice that has none says why
         pair = part.ends(plane, skip_mm=skip_mm, reach_mm=reach_mm)
     except stage.SliceProblem as problem:
         return View(canvas.array(), f"Slice {plane}: {problem}")
     lengths = {"skip_px": skip_mm / part.px, "reach_px": reach_mm / part.px}
     fits = [_fit(found, outside, ends, **lengths) for ends in pair]
     _draw_ends(canvas, window, fits, part.px, 1.0)
+    # a close-up of each end, about half-way between outer and inner boundary
     for side in (0, 1):
         middle = (pair[0].points[side] + pair[1].points[side]) / 2
         _close_up(canvas, (SIDE + 8, side * (SIDE - _INSET), _INSET, _INSET), rgb, middle, fits, part.px, side)
+    # how many points carry each tangent, and how wide the gap is
     counts = " and ".join(str(sum(len(points) for points in fit.used)) for fit in fits)
     width = np.hypot(*np.diff(pair[0].points, axis=0)[0]) * part.px
     line = f"Slice {plane}, skip {skip_mm:g} mm, reach {reach_mm:g} mm: {counts} boundary points carry the outer and "
@@ -125,6 +130,7 @@ def _view(part: Slices, plane: int, skip_mm: float, reach_mm: float) -> View:
 
 def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatures, NDArray[np.bool_]]:
     """What `skip` and `reach` do not change: canvas, slice in colours, features, which boundary is off the hull."""
+    # the slice with its boundaries, then spine and hull as lines over it
     found, mask = part.features(plane), part.bone.voxels[plane]
     outside = ~found.in_hull
     canvas, window = Canvas(SIDE + 8 + _INSET, SIDE), Window.whole((0, 0, SIDE, SIDE), mask.shape)
@@ -132,6 +138,7 @@ def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatur
     canvas.show(rgb, window)
     _draw_lines(canvas, window, found)
     annotate_slice(canvas, window, part.bone, plane)
+    # the legend lies in the cavity, where nothing is drawn
     outer_name, inner_name = "outer boundary, B \N{MINUS SIGN} S", "inner boundary, B \N{INTERSECTION} S"
     bounds = [(SKY, "area", outer_name), (ORANGE, "area", inner_name)]
     lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S")]
@@ -151,8 +158,10 @@ class Fit:
 
 def _fit(found: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, *, skip_px: float, reach_px: float) -> Fit:
     """The boundary points behind each tangent; `outside` says which lie off the hull."""
+    # B - S or B and S, by the boundary pixel nearest to one of the ends
     is_outer = bool(outside[np.argmin(np.hypot(*(found.boundary - ends.points[0]).T))])
     boundary = found.boundary[outside == is_outer]
+    # each end has the run of a spine that starts nearest to it
     runs = [run for spine in found.skeleton for run in (spine, spine[::-1])]
     used = []
     for point in ends.points:
@@ -172,6 +181,7 @@ def _slice_picture(mask: NDArray[np.bool_], found: SliceFeatures) -> RGB:
 
 def _draw_lines(canvas: Canvas, window: Window, found: SliceFeatures) -> None:
     """Hull and spines."""
+    # corners of the hull from its half-planes, about a point inside, joined by their angle
     inside = found.skeleton[0].mean(axis=0)
     for candidate in (inside, np.concatenate(found.skeleton).mean(axis=0)):
         if (found.hull[:, :2] @ candidate + found.hull[:, 2] < -1e-6).all():
@@ -189,6 +199,7 @@ def _draw_ends(canvas: Canvas, window: Window, fits: list[Fit], px: float, size:
     for fit in fits:
         for points, end, tangent in zip(fit.used, fit.ends.points, fit.ends.tangents, strict=True):
             canvas.dots(window.px(points), fit.colour, radius=1.2 * size + 0.6)
+            # the fitted line, from the farthest used point to the end
             back = ((points - end) @ tangent).min()
             canvas.line(window.px([end + back * tangent, end]), BLACK, width=1)
             canvas.arrow(window.px(end), window.px(end + 12.0 / px * tangent), GREEN, width=1.2 + 0.8 * size)
@@ -205,11 +216,13 @@ def _close_up(
     side: int,
 ) -> None:
     """One end of the gap, large."""
+    # the same part of the slice twice: as a place on the canvas, and within the inset
     x, y, width, height = box
     window = Window.around(box, middle - _AROUND / px, middle + _AROUND / px)
     inset = Canvas(int(width), int(height))
     here = Window((0, 0, width, height), window.rows, window.cols)
     inset.show(rgb, here)
+    # only what belongs to this end
     one = [Fit(GapEnds(f.ends.points[[side]], f.ends.tangents[[side]]), (f.used[side],), f.colour) for f in fits]
     _draw_ends(inset, here, one, px, 2.0)
     inset.scale_bar(12, height - 12, 10 / px * here.zoom, "10 mm")

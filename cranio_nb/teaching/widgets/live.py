@@ -34,6 +34,7 @@ class Front:
 
     def __init__(self, panel: Any) -> None:
         self.panel = panel
+        # a widget for each control, an image and a caption that screen readers announce
         self.controls = {name: _widget(control) for name, control in panel.controls.items()}
         height, width = panel.view.rgb.shape[:2]
         self.image = ipw.Image(format="jpeg", width=width, height=height)
@@ -42,6 +43,7 @@ class Front:
         self._later = Latest(self._draw)
         self._paused = False
         self._show()
+        # a slow panel answers when a slider is let go, others follow it
         for widget in self.controls.values():
             if panel.slow and hasattr(widget, "continuous_update"):
                 widget.continuous_update = False
@@ -68,8 +70,10 @@ class Front:
             self._later()
 
     def _draw(self) -> None:
+        # said before the work begins
         if self.panel.slow:
             self.caption.value = '<p role="status">Working …</p>'
+        # a slider at its end stays at its end when the picture moves that end
         view = self.panel.update(self._values())
         at_end = [name for name in view.limits or {} if self.controls[name].value == self.controls[name].max]
         self._show()
@@ -93,6 +97,7 @@ class Front:
         view = self.panel.view
         self.image.value = encoded_jpeg(view.rgb)
         self.caption.value = f'{_UNSEEN % _escaped(self.panel.alt)}<p role="status">{_escaped(view.line)}</p>'
+        # new limits and switched-off controls are set without being taken for moves
         self._paused = True
         for name, high in (view.limits or {}).items():
             self.controls[name].max = high

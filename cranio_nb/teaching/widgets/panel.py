@@ -66,10 +66,12 @@ class Panel:
         InputRefused
             ``UnknownControl``.
         """
+        # refused before anything is moved
         for name in values:
             if name not in self.controls:
                 known = ", ".join(self.controls)
                 raise InputRefused("UnknownControl", f"This panel has no control {name!r}.", f"It has: {known}.")
+        # with a front end the widgets move too, without one only the values
         if mode() == "widget":
             self.front.set(values)
         else:

@@ -71,6 +71,7 @@ class Stack:
         -------
         Window
         """
+        # one window for all slices, so that nothing jumps from slice to slice
         rows, cols = np.nonzero(self.patches.any(axis=0))
         low, high = np.array([rows.min(), cols.min()]), np.array([rows.max(), cols.max()])
         margin = 0.25 * (high - low).max() + 4
@@ -118,6 +119,7 @@ def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
     -------
     Stack
     """
+    # the paper's preset; k from the end tangents where that is chosen
     options: dict[str, Any] = {"pressure_mm": None} if pressure == PRESSURES[0] else {}
     made = design(bone, [opening], method="slicewise", preset="paper", **options)
     (sliced,) = made.working
@@ -153,6 +155,7 @@ def _view(stack: Stack, plane: int, curves: bool) -> View:
 
 def _draw_areas(canvas: Canvas, stack: Stack, at: int) -> None:
     """Area of each slice's patch, coloured by how it was filled."""
+    # a bar for each slice in the colour of its status, the shown one marked
     n = len(stack.slices)
     chart = Chart(
         (SIDE + 4, 10, 340, 300), (stack.first - 0.5, stack.first + n - 0.5), (0, 1.1 * stack.areas.max() + 1)

@@ -71,8 +71,9 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
     Panel
         Control ``n``.
     """
-    vault, plane = radius_measurement.measure_around(bone, opening), sum(opening.planes) // 2
-    made = lru_cache(maxsize=None)(lambda n: _flat_fill(bone, opening, vault, n, plane, truth))
+    # each number of guides is filled once and kept
+    radius_map, plane = radius_measurement.measure_around(bone, opening), sum(opening.planes) // 2
+    made = lru_cache(maxsize=None)(lambda n: _flat_fill(bone, opening, radius_map, n, plane, truth))
     lost = np.zeros(bone.shape[1:], bool) if truth is None or truth.patch is None else truth.patch.voxels[plane]
     alt = "The hole from outside with guiding points, rim and fill; beside it a slice with the fill and what it misses."
     controls = (Slider("n", "guiding points", 3, 24, 12),)
@@ -80,10 +81,11 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
 
 
 def _flat_fill(
-    bone: Volume, opening: Opening, vault: RadiusMap, n: int, plane: int, truth: Prosthesis | None
+    bone: Volume, opening: Opening, radius_map: RadiusMap, n: int, plane: int, truth: Prosthesis | None
 ) -> FlatFill:
     """Fill a hole between `n` guiding points and measure it."""
-    made = you.fill_between(bone, opening, you.find_guides(vault, n))
+    # only the shown plane is voxelised, and the outer nodes measured where the truth is known
+    made = you.fill_between(bone, opening, you.find_guides(radius_map, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
     patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
     nodes = made.outer.mesh.vertices
@@ -93,15 +95,18 @@ def _flat_fill(
 
 def _from_outside(made: you.Filling, towards: NDArray[np.float64]) -> Canvas:
     """A filling with its rim and guides, shaded."""
+    # extent of skull and fill across the line of sight: it sets the size of a pixel
     right_down = view_axes(towards)[:2].T
     meshes = (made.skull, BONE), (made.outer.mesh, SKY)
     flat = np.concatenate([mesh.vertices for mesh, _ in meshes]) @ right_down
     low, px = flat.min(axis=0) - _FREE, float(np.ptp(flat, axis=0).max() / (_SIDE - 30))
+    # both surfaces shaded, in the middle of the square
     solids = [Solid(mesh, rgb_shares(colour)) for mesh, colour in meshes]
     rgb = (255 * render(solids, towards, px_mm=px).rgb).astype(np.uint8)
     corner = (_SIDE - np.array(rgb.shape[1::-1])) // 2
     canvas = Canvas(_SIDE, _SIDE)
     canvas.place(rgb, *corner)
+    # the same projection for rim and guides, drawn over the surfaces
     rim, guides = ((points @ right_down - low) / px + corner for points in (made.outer_rim.points, made.guides))
     canvas.line(np.concatenate([rim, rim[:1]]), BLUE, width=2.5)
     canvas.dots(guides, ORANGE, radius=5, edge=BLACK)
@@ -113,6 +118,7 @@ def _guides_view(bone: Volume, plane: int, fill: FlatFill, lost: NDArray[np.bool
     """The fill from outside, and one slice of it over the bone that is missing."""
     canvas = Canvas(2 * _SIDE, _SIDE)
     canvas.inlay(fill.picture, 0, 0)
+    # the slice around fill and missing bone; what of the missing bone the fill covers is in its colour
     inset = Canvas(_SIDE, _SIDE)
     index = np.argwhere(fill.patch | lost) if (fill.patch | lost).any() else np.argwhere(bone.voxels[plane])
     window = Window.around((0, 0, _SIDE, _SIDE), index.min(axis=0) - 12, index.max(axis=0) + 12)
@@ -123,6 +129,7 @@ def _guides_view(bone: Volume, plane: int, fill: FlatFill, lost: NDArray[np.bool
     annotate_slice(inset, window, bone, plane)
     inset.legend(_SIDE - 150, 6, [(SKY, "area", "fill"), (VERMILLION, "area", "missed bone")])
     canvas.inlay(inset, _SIDE, 0)
+    # length of the closed rim, area of the membrane across it
     rim = fill.made.outer_rim.points
     length = np.linalg.norm(rim - np.roll(rim, 1, axis=0), axis=1).sum()
     line = (
@@ -148,6 +155,7 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     Panel
         Controls ``turn_deg``, ``lean_deg`` and ``shift_mm``.
     """
+    # plane and surface are measured once; a move only reflects the surface again
     found = symmetry.find_symmetry_plane(bone, opening.head_centre)
     surface = measure_outer_surface(bone, opening.head_centre)
     plane = sum(opening.planes) // 2
@@ -181,6 +189,7 @@ def move_plane(
     -------
     SymmetryPlane
     """
+    # adding the tangent of an angle along an axis turns the normal by that angle
     _, back, up = surface.grid.axes
     normal = plane.normal + np.tan(np.radians(turn_deg)) * back + np.tan(np.radians(lean_deg)) * up
     normal = normal / np.linalg.norm(normal)
@@ -193,6 +202,7 @@ def _mirror_view(
     """Bone and mirror image in a slice, and the residual over the vault."""
     canvas = Canvas(2 * _SIDE, _SIDE)
     canvas.inlay(_mirrored_slice(bone, mirror, plane), 0, 0)
+    # residuals of all rays as a map seen from above, scaled to the square
     residual = np.abs(symmetry.mirror_residuals(surface, mirror)).astype(np.float32)
     side = _SIDE - 90
     rows = np.linspace(0, len(residual) - 1, side).round().astype(int)

@@ -35,6 +35,7 @@ def threshold(ct: Volume) -> Panel:
     Panel
         Controls ``plane``, ``threshold_hu``, ``max_hole_mm2`` and ``parts``.
     """
+    # the histogram is of every fourth voxel: it does not change with the controls
     last = ct.shape[0] - 1
     controls = (
         Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
@@ -49,6 +50,7 @@ def threshold(ct: Volume) -> Panel:
 
 def _view(ct: Volume, histogram: Histogram, plane: int, threshold_hu: float, max_hole_mm2: float, parts: bool) -> View:
     """A slice with its bone, filled holes and pieces, and the histogram with the threshold."""
+    # the slice by itself, as the stage would take it: threshold, then small holes
     area = float(np.prod(ct.spacing[1:]))
     raw = stage.apply_threshold(ct.voxels[plane], threshold_hu)
     bone = stage.fill_holes(raw[None], max_hole_px=max_hole_mm2 / area)[0]
@@ -62,6 +64,7 @@ def _view(ct: Volume, histogram: Histogram, plane: int, threshold_hu: float, max
     entries = [(BONE, "area", "bone"), (GREEN, "area", "holes filled")]
     canvas.legend(SIDE + 62, 350, [*entries, (ORANGE, "area", "other pieces")] if parts else entries)
 
+    # areas by counting pixels
     filled = (np.count_nonzero(bone) - np.count_nonzero(raw)) * area
     line = (
         f"Slice {plane} at {threshold_hu:g} HU: {np.count_nonzero(bone) * area / 100:.1f} cm\N{SUPERSCRIPT TWO} of "
@@ -81,10 +84,12 @@ def _draw_threshold(canvas: Canvas, histogram: Histogram, threshold_hu: float) -
 
 def _bone_picture(hu: NDArray, raw: NDArray[np.bool_], bone: NDArray[np.bool_], labels: NDArray | None) -> RGB:
     """Dim CT, bone over it, filled holes in green, pieces in colours where labels are given; shape (R, C, 3)."""
+    # at half brightness, so that the colours over it stand out
     rgb = windowed(hu, 200, 1400) // 2
     if labels is None:
         rgb = tinted(rgb, raw, BONE)
     else:
+        # the largest pieces first; the last colour serves all the rest
         by_size = np.argsort(np.bincount(labels.ravel())[1:])[::-1]
         for rank, part in enumerate(by_size[:_MOST_PARTS]):
             rgb = tinted(rgb, labels == part + 1, _PART_COLOURS[min(rank, len(_PART_COLOURS) - 1)])

@@ -40,6 +40,7 @@ def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
     Panel
         Control ``steps``.
     """
+    # each number of steps is smoothed and drawn once
     raw = stage.extract_surface(patch, smooth=False)
     smoothed = lru_cache(maxsize=None)(lambda n: raw if n == 0 else stage.extract_surface(patch, n_steps=n))
     shaded = lru_cache(maxsize=None)(lambda n: _shaded(smoothed(n), towards))
@@ -56,6 +57,7 @@ def _view(rgb: RGB, px: float, moved: NDArray[np.float64], bounds: tuple[float, 
     `bounds` are half the longest side and half the diagonal of a voxel: from its middle to a wall, and to a corner.
     """
     wall, corner = bounds
+    # surface at the left, how far its vertices moved at the right
     canvas = Canvas(VIEW + _CHART, VIEW)
     put_view(canvas, rgb, px)
     _draw_deviation(canvas, moved, wall, corner)
@@ -67,6 +69,7 @@ def _view(rgb: RGB, px: float, moved: NDArray[np.float64], bounds: tuple[float, 
 
 def _draw_deviation(canvas: Canvas, moved: NDArray[np.float64], wall: float, corner: float) -> None:
     """Histogram of how far the vertices moved, beside their mean and the bounds."""
+    # beside the histogram the two bounds that half a voxel sets
     counts, edges = np.histogram(moved, 60, (0, corner * 1.05))
     chart = Chart((VIEW, 20, _CHART, 320), (0, corner * 1.05), (0.8, max(10.0, 1.5 * counts.max())), log=True)
     chart.frame(canvas, "vertices", "moved from marching cubes (mm)")

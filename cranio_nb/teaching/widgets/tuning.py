@@ -87,6 +87,7 @@ def tuner(case: Case) -> Tuner:
     Tuner
         Its controls are those options and ``own``: whether ``pressure_mm`` is set by hand.
     """
+    # openings do not depend on the options: found once
     bone, truth = Volume(case.bone, case.affine), Volume(case.implant, case.affine)
     openings = opening_search.find_openings(bone)
     made = lru_cache(maxsize=32)(lambda *values: _measured(bone, truth, openings, options_of(*values)))
@@ -103,6 +104,7 @@ def tuner(case: Case) -> Tuner:
         Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, 5, 1, 0.1),
         Switch("smooth", "surface without stairs", True),
     )
+    # the scores at the start, to compare with
     first = made(*(control.value for control in controls))
     alt = (
         "The designed prosthesis coloured by its distance from the true one, and its scores beside those at the start."
@@ -146,6 +148,7 @@ def options_of(
     dict
     """
     return {
+        # the names of the method's own options
         "axial": slices == SLICES[0],
         "directions": directions,
         "skip_mm": skip_mm,
@@ -205,6 +208,7 @@ def _view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
 
 def _verdict(value: float, before: float, more: bool | None, digits: int) -> tuple[str, str]:
     """Arrow and colour that say whether a value is better than before."""
+    # for a ratio, nearer to 1 is better; a change that the digits do not show counts for none
     gain = (value - before) * (1 if more else -1) if more is not None else abs(before - 1) - abs(value - 1)
     if abs(gain) < 0.5 * 10**-digits:
         return "", BLACK

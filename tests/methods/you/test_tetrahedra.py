@@ -1,19 +1,13 @@
-"""Marching tetrahedra and the way back to voxels."""
+"""Marching tetrahedra: closed manifolds of any mask, volumes known in closed form."""
 
 import numpy as np
 import pytest
+from random_masks import OBLIQUE, noise
 
 from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.mesh import Mesh
-from cranio_nb.methods.you.method import mesh_to_voxels, tetrahedra
+from cranio_nb.methods.you import tetrahedra
 from cranio_nb.volume import Volume
-
-OBLIQUE = np.array([[0.1, -0.2, 0.9, 31.0], [0.3, 0.8, 0.1, -70.0], [1.9, -0.2, 0.1, 5.0], [0, 0, 0, 1.0]])
-"""Unlike steps, slanting axes, an origin far away; left-handed, as (plane, row, col) in LPS is."""
-
-
-def noise(shape=(9, 8, 7), seed=0):
-    return np.random.default_rng(seed).random(shape) < 0.4
 
 
 def ball(n, radius=1.0):
@@ -62,28 +56,3 @@ def test_vertices_lie_on_the_level_of_a_linear_field():
 
 def test_a_mask_at_the_border_is_closed_there():
     assert check_mesh(tetrahedra.extract(Volume(np.ones((3, 4, 5), bool), np.eye(4)))).sound
-
-
-@pytest.mark.parametrize("affine", [np.eye(4), OBLIQUE])
-def test_the_voxels_inside_the_surface_of_a_mask_are_the_mask(affine):
-    mask = Volume(noise(), affine)
-    np.testing.assert_array_equal(mesh_to_voxels.inside(tetrahedra.extract(mask), mask), mask.voxels)
-
-
-def test_a_mesh_beyond_the_grid_fills_what_of_it_is_on_the_grid():
-    mask = Volume(np.ones((9, 9, 9), bool), np.eye(4))
-    small = mask.crop(np.s_[2:5, 3:6, 4:9])
-    assert mesh_to_voxels.inside(tetrahedra.extract(mask), small).all()
-    there = small.affine.copy()
-    there[0, 3] += 40
-    away = Volume(small.voxels, there)
-    assert not mesh_to_voxels.inside(tetrahedra.extract(mask), away).any()
-
-
-def test_overlapping_parts_count_once():
-    a = tetrahedra.extract(Volume(np.ones((4, 4, 4), bool), np.eye(4)))
-    both = Mesh(np.concatenate([a.vertices, a.vertices + 0.3]), np.concatenate([a.faces, a.faces + len(a.vertices)]))
-    grid = Volume(np.zeros((6, 6, 6), bool), np.eye(4))
-    assert (mesh_to_voxels.inside(both, grid) >= mesh_to_voxels.inside(a, grid)).all() and mesh_to_voxels.inside(
-        both, grid
-    )[1:3, 1:3, 1:3].all()

@@ -1,7 +1,6 @@
 """Typical wrong answers of lesson 00 get the hint that helps."""
 
-import pytest
-from lesson_answers import judge, listed
+from lesson_answers import hint_tests
 
 from cranio_nb.teaching.exercises.tour import EXERCISES
 
@@ -24,12 +23,4 @@ WRONG = {
     ],
 }
 
-
-def test_every_exercise_has_wrong_answers():
-    assert list(WRONG) == list(EXERCISES) and all(len(answers) >= 3 for answers in WRONG.values())
-
-
-@pytest.mark.parametrize(("name", "body", "hint"), listed(WRONG))
-def test_a_typical_wrong_answer_gets_its_hint(name, body, hint):
-    verdict = judge(name, body)
-    assert not verdict.passed and hint in verdict.message
+test_every_exercise_has_wrong_answers, test_a_typical_wrong_answer_gets_its_hint = hint_tests(WRONG, EXERCISES)

@@ -45,6 +45,7 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
     Panel
         Controls ``second_mm``, ``third_mm`` and ``mirror_mm``.
     """
+    # fewer rays than the method takes, so that a plate is bent at once
     fine = radius_measurement.measure_around(bone, opening)
     scene = make_scene(fine, bone, truth, _EVERY)
     try:
@@ -66,11 +67,11 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
 
 def _bend(scene: Scene, *, second_mm: float, third_mm: float, mirror_mm: float) -> Array:
     """Outer radii of the plate in the hole and beside it, shape (M, M), mm; nan elsewhere."""
-    vault = scene.vault
+    radius_map = scene.radius_map
     return thin_plate.bend(
-        vault.outer,
-        vault.hole,
-        vault.step_mm,
+        radius_map.outer,
+        radius_map.hole,
+        radius_map.step_mm,
         like=scene.mirrored,
         second_mm=second_mm,
         third_mm=third_mm,
@@ -80,7 +81,8 @@ def _bend(scene: Scene, *, second_mm: float, third_mm: float, mirror_mm: float) 
 
 def _view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
     """Map of errors and profile of a plate."""
-    off, hole = plate - scene.true, scene.vault.hole
+    # errors in the hole where the truth is known, and on the bone beside it
+    off, hole = plate - scene.true, scene.radius_map.hole
     canvas = Canvas(SIDE + WIDE, SIDE)
     _draw_map(canvas, off, hole)
     _draw_profile(canvas, scene, plate)
@@ -97,7 +99,7 @@ def _view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
 
 
 def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_]) -> None:
-    """Absolute errors over the chart, the hole outlined, and their scale."""
+    """Absolute errors over the map, the hole outlined, and their scale."""
     # the part of the map that has values, scaled to the square
     side, middle = SIDE - 90, len(off) // 2
     reach = int(np.abs(np.argwhere(np.isfinite(off) | hole) - middle).max(initial=1))
@@ -113,11 +115,11 @@ def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_]) -> None:
 
 
 def _draw_profile(canvas: Canvas, scene: Scene, plate: Array) -> None:
-    """Radii along the chart's middle row: bone, truth and plate."""
-    vault, row = scene.vault, len(plate) // 2
-    x = (np.arange(len(plate)) - row) * vault.step_mm
+    """Radii along the map's middle row: bone, truth and plate."""
+    radius_map, row = scene.radius_map, len(plate) // 2
+    x = (np.arange(len(plate)) - row) * radius_map.step_mm
     near = np.isfinite(plate[row])
-    bone = np.where(vault.hole, np.nan, vault.outer)[row]
+    bone = np.where(radius_map.hole, np.nan, radius_map.outer)[row]
     radii = np.concatenate([bone[near], scene.true[row][near]])
     radii = radii[np.isfinite(radii)] if np.isfinite(radii).any() else np.nan_to_num(plate[row])
     ends = (float(x[near].min()), float(x[near].max())) if near.any() else (-1.0, 1.0)

@@ -28,7 +28,7 @@ class Scene:
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
         Of every third or fourth ray.
     true : ndarray, shape (M, M)
         Radii of the outer surface with the missing bone in its place, mm; nan where none is known.
@@ -36,17 +36,17 @@ class Scene:
         Outer radii of the other side of the skull.
     """
 
-    vault: RadiusMap
+    radius_map: RadiusMap
     true: Array
     mirrored: Array | None = None
 
 
-def thin_rays(vault: RadiusMap, every: int) -> RadiusMap:
+def thin_rays(radius_map: RadiusMap, every: int) -> RadiusMap:
     """Keep every n-th ray of a radius map, counted from its middle; radii become means of their neighbours.
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
         N x N rays.
     every : int
 
@@ -55,11 +55,11 @@ def thin_rays(vault: RadiusMap, every: int) -> RadiusMap:
     RadiusMap
         Its hole holds the hole of the finer map.
     """
-    shown = [np.where(vault.hole, np.nan, radius) for radius in (vault.outer, vault.inner)]
+    shown = [np.where(radius_map.hole, np.nan, radius) for radius in (radius_map.outer, radius_map.inner)]
     outer, inner = (thin_plate.thinned(radius, every) for radius in shown)
-    hole = thin_plate.thinned(vault.hole.astype(float), every) > _ANY
-    grid = replace(vault.grid, step_rad=vault.grid.step_rad * every, n=len(outer))
-    return replace(vault, grid=grid, outer=outer, inner=inner, hole=hole)
+    hole = thin_plate.thinned(radius_map.hole.astype(float), every) > _ANY
+    grid = replace(radius_map.grid, step_rad=radius_map.grid.step_rad * every, n=len(outer))
+    return replace(radius_map, grid=grid, outer=outer, inner=inner, hole=hole)
 
 
 def make_scene(fine: RadiusMap, bone: Volume, truth: Prosthesis | None, every: int) -> Scene:
@@ -80,11 +80,11 @@ def make_scene(fine: RadiusMap, bone: Volume, truth: Prosthesis | None, every: i
     -------
     Scene
     """
-    vault = thin_rays(fine, every)
+    radius_map = thin_rays(fine, every)
     if truth is None or truth.patch is None:
-        return Scene(vault, np.where(vault.hole, np.nan, vault.outer))
+        return Scene(radius_map, np.where(radius_map.hole, np.nan, radius_map.outer))
     whole = radius_measurement.measure_along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
-    return Scene(vault, thin_plate.thinned(whole.outer, every))
+    return Scene(radius_map, thin_plate.thinned(whole.outer, every))
 
 
 def error_line(off: Array) -> str:

@@ -55,19 +55,17 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull.
-    opening : Opening
-    truth : Prosthesis, optional
-        The missing bone with its patch, where it is known (`against_truth.true_prosthesis`).
+    bone, opening, truth
+        As for `plate.bent_plate`.
 
     Returns
     -------
     Panel
         Controls ``wavelength_mm``, ``mass``, ``damping`` and ``step``.
     """
+    # on few rays a whole motion takes seconds; it is kept for each setting
     scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
-    run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.vault, **values))
+    run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.radius_map, **values))
     controls = (
         Slider("wavelength_mm", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
         Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5),
@@ -81,12 +79,12 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     return Panel(controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, slow=True)
 
 
-def relax_sheet(vault: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
+def relax_sheet(radius_map: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
     """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps.
 
     Parameters
     ----------
-    vault : RadiusMap
+    radius_map : RadiusMap
         Of few rays, or it takes long.
     wavelength_mm : float
         Ripples of this length are halved.
@@ -97,7 +95,8 @@ def relax_sheet(vault: RadiusMap, *, wavelength_mm: float, mass: float, damping:
     -------
     Way
     """
-    setting = dnurbs.fit(vault, wavelength_mm=wavelength_mm, tension_mm2=0.0, span_mm=_SPAN).settings[0]
+    # springs and natural shape as the method fits them, then let go from too deep
+    setting = dnurbs.fit(radius_map, wavelength_mm=wavelength_mm, tension_mm2=0.0, span_mm=_SPAN).settings[0]
     dynamics = Dynamics(mass=mass, damping=damping)
     deep = replace(setting.natural, control=setting.natural.control * _DEEP)
     motions = [sheet_motion.start(deep, setting, dynamics)]
@@ -115,11 +114,12 @@ def _view(scene: Scene, way: Way, step: int) -> View:
     _draw_net(canvas, way, now.sheet)
     _draw_cut(canvas, way, now.sheet)
     _draw_energy(canvas, way, min(step, last))
+    # the numbers of this step, and how far the sheet is off in the hole
     state = "at rest" if now.converged else "not at rest"
     line = f"Step {min(step, last)} of {last}, {state}: energy {now.energy:.0f} mm4"
     line += f", moved {now.moved:.2f} mm at most" if now.n_iter else ""
-    hole = scene.vault.hole
-    off = (dnurbs.radii_of(now.sheet, scene.vault) - scene.true)[hole]
+    hole = scene.radius_map.hole
+    off = (dnurbs.radii_of(now.sheet, scene.radius_map) - scene.true)[hole]
     line += f"; {error_line(off)} in the hole" if np.isfinite(off).any() else ""
     return View(canvas.array(), line + ".", limits={"step": last})
 
@@ -149,11 +149,13 @@ def _draw_net(canvas: Canvas, way: Way, one: Sheet) -> None:
 
 def _draw_cut(canvas: Canvas, way: Way, one: Sheet) -> None:
     """The middle of the sheet across the head: bone that pulls, sheet, and its row of control points."""
+    # springs beside the middle line, and the row of control points next to it
     springs, middle = way.setting.springs, one.spans[0] / 2
     points = springs.points[np.abs(springs.v - middle) < 0.1]
     control = one.control[len(one.control) // 2]
     wide = float(np.abs(springs.points[:, 0]).max()) + 5
     high = float(springs.points[:, 2].max()) + 8
+    # limits by the bone, so that the axes hold still while the sheet moves
     cut = Chart((SIDE, 0, WIDE, 250), (-wide, wide), (float(springs.points[:, 2].min()) - 8, high))
     cut.frame(canvas, "a cut through the middle: out of the head (mm)", "across the hole (mm)")
     canvas.dots(cut.px(points[:, [0, 2]]), BONE, radius=3.5, edge=BLACK)

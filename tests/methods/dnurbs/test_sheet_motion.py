@@ -1,0 +1,83 @@
+"""A sheet in motion: its energy falls, it comes to rest, and rest is where the energy is least."""
+
+import numpy as np
+import pytest
+from scipy import sparse
+from sheets import MATERIAL, SHAPE, SPANS
+
+from cranio_nb.methods.dnurbs import sheet, sheet_motion
+from cranio_nb.methods.dnurbs.sheet import Sheet, Springs
+from cranio_nb.methods.dnurbs.sheet_motion import Dynamics, Setting
+
+
+def test_the_gauss_points_weigh_as_much_as_the_sheet_is_wide(setting):
+    assert sheet_motion.quadrature(setting).weight.sum() == pytest.approx(SPANS[0] * SPANS[1])
+
+
+def test_the_energy_is_that_of_the_stiffness_and_the_springs(wild, setting):
+    one = Sheet(wild.control, np.ones(SHAPE))
+    off = one.control.reshape(-1, 3) - setting.natural.control.reshape(-1, 3)
+    springs = setting.springs
+    pulled = springs.strength @ ((springs.points - one.at(springs.v, springs.u)) ** 2).sum(axis=1)
+    wanted = (np.sum(off * (sheet.stiffness(SPANS, MATERIAL) @ off)) + pulled) / 2
+    found = sheet_motion.potential(one, setting, Dynamics(), sheet_motion.quadrature(setting))
+    assert found == pytest.approx(wanted, rel=1e-12)
+
+
+def test_the_kronecker_stiffness_is_the_one_of_gauss_points(setting):
+    """The fast path and the general one agree on K where weights are 1."""
+    loose = Springs(np.zeros((1, 3)), np.ones(1), np.ones(1), np.zeros(1))
+    soft = Setting(loose, setting.natural, MATERIAL)
+    elastic = sheet_motion._forces(setting.natural, soft, Dynamics(), sheet_motion.quadrature(soft)).elastic
+    wanted = sparse.block_diag([sheet.stiffness(SPANS, MATERIAL)] * 3)
+    assert abs(elastic - wanted).max() < 1e-11
+
+
+@pytest.mark.parametrize("mass", [0.0, 3.0])
+def test_a_frozen_sheet_comes_to_rest_where_one_solve_puts_it(wild, setting, mass):
+    dynamics = Dynamics(mass=mass)
+    energies = []
+    still = sheet_motion.start(Sheet(wild.control, np.ones(SHAPE)), setting, dynamics)
+    end = sheet_motion.relax(
+        still, setting, dynamics, tol=1e-10, max_iter=2000, iter_callback=lambda m: energies.append(m.energy)
+    )
+    rest, _ = sheet.settle(setting.springs, setting.natural, MATERIAL)
+    assert end.converged and end.n_iter == len(energies)
+    np.testing.assert_allclose(end.sheet.control, rest.control, atol=1e-6)
+    assert (np.diff([still.energy, *energies]) <= 1e-12 * still.energy).all()
+    again = sheet_motion.relax(sheet_motion.start(rest, setting, dynamics), setting, dynamics, tol=1e-9)
+    assert again.n_iter == 1 and again.moved < 1e-9  # rest is a fixed point
+
+
+@pytest.mark.parametrize(("mass", "damping"), [(1e6, 1.0), (0.0, 1e6)])
+def test_a_sheet_that_is_only_slow_is_not_at_rest(wild, setting, mass, damping):
+    dynamics = Dynamics(mass=mass, damping=damping)
+    still = sheet_motion.start(Sheet(wild.control, np.ones(SHAPE)), setting, dynamics)
+    first = sheet_motion.relax(still, setting, dynamics, tol=1e-2, max_iter=1)
+    assert 0 < first.moved < 1e-2 and not first.converged
+
+
+def test_free_weights_find_a_place_of_less_energy_that_is_a_least_one(setting):
+    dynamics = Dynamics(free_weights=True, hold=0.1)
+    rest, _ = sheet.settle(setting.springs, setting.natural, MATERIAL)
+    energies = []
+    end = sheet_motion.relax(
+        sheet_motion.start(rest, setting, dynamics),
+        setting,
+        dynamics,
+        tol=1e-8,
+        max_iter=500,
+        iter_callback=lambda m: energies.append(m.energy),
+    )
+    assert end.converged and (np.diff(energies) <= 1e-12 * energies[0]).all()
+    sums = sheet_motion.quadrature(setting)
+    least = sheet_motion.potential(end.sheet, setting, dynamics, sums)
+    assert least < sheet_motion.potential(rest, setting, dynamics, sums) - 1e-3
+    assert end.sheet.weights.min() > 0 and np.ptp(end.sheet.weights) > 0.1
+    q = sheet_motion._coordinates(end.sheet, True)
+    for i in (3, 90, 165, 180, 210):
+        beside = [
+            sheet_motion._with_coordinates(q=q + s * np.eye(len(q))[i], sheet=end.sheet, free_weights=True)
+            for s in (0.01, -0.01)
+        ]
+        assert all(sheet_motion.potential(other, setting, dynamics, sums) > least for other in beside)
