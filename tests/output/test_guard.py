@@ -142,3 +142,11 @@ def test_a_disk_that_is_full_or_takes_nothing_is_refused(tmp_path, monkeypatch):
 def test_a_path_that_is_missing_is_named(tmp_path):
     with pytest.raises(InputRefused, match="given as --skull"):
         check_reads({"PATCH": tmp_path, "--skull": tmp_path / "none"})
+
+
+def test_files_that_a_killed_run_left_half_replaced_are_not_read(tmp_path):
+    part = tmp_path / "out" / ".part-abcdefgh"
+    (part / "commit").mkdir(parents=True)
+    (tmp_path / "out" / "patch.nii.gz").write_text("of another run, perhaps")
+    with pytest.raises(InputRefused, match="beside PATCH were being replaced"):
+        check_reads({"PATCH": tmp_path / "out" / "patch.nii.gz"})
