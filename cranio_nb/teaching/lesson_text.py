@@ -99,11 +99,28 @@ def make_notebook(cells: Sequence[NotebookNode]) -> NotebookNode:
     >>> one == other, one.cells[0].id == one.cells[1].id
     (True, False)
     """
+    for cell, name in zip(cells, cell_ids(cells), strict=True):
+        cell.id = name
+    return nbformat.v4.new_notebook(cells=list(cells), metadata=METADATA)
+
+
+def cell_ids(cells: Sequence[NotebookNode]) -> list[str]:
+    """Id of each cell, from its text and how often that was there before.
+
+    Parameters
+    ----------
+    cells : sequence of NotebookNode
+
+    Returns
+    -------
+    list of str
+    """
     seen: dict[str, int] = {}
+    found = []
     for cell in cells:
         n = seen[cell.source] = seen.get(cell.source, 0) + 1
-        cell.id = hashlib.sha256(f"{n} {cell.cell_type} {cell.source}".encode()).hexdigest()[:12]
-    return nbformat.v4.new_notebook(cells=list(cells), metadata=METADATA)
+        found.append(hashlib.sha256(f"{n} {cell.cell_type} {cell.source}".encode()).hexdigest()[:12])
+    return found
 
 
 def _check_solutions(name: str, cells: list[NotebookNode]) -> None:
