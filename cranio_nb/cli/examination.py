@@ -19,7 +19,7 @@ _NEEDED = tuple(
 )
 _OPTIONAL = {
     "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
-    "view": ("pyvista", "vtk", "trame-pyvista"),
+    "view": ("pyvista", "vtk", "trame-pyvista", "aiohttp"),
 }
 _MIN_MEMORY_GB = 2.0
 _PLOT = "from matplotlib.backends.backend_agg import FigureCanvasAgg as C; from matplotlib.figure import Figure as F; "

@@ -62,13 +62,16 @@ def read_ct(
     >>> bool((ct.voxels == case.hu).all()), report.source, report.kind
     (True, 'DICOM', 'ct')
     >>> report.findings[0].message
-    'Read series 2: 44 slices of 128 x 128, 3.00 mm apart, kernel STANDARD.'
+    'Read series 2: 44 slices of 128 x 128, 3.00 mm apart, soft kernel.'
     """
     _check_allowances(allow)
     with _refusing():
         path = Path(path)
         if not path.exists():
             raise InputRefused("NotFound", "There is no such file or folder.", "Check the path.")
+        if path.is_file() and path.name.lower() == "dicomdir":
+            message = "A DICOMDIR is the table of contents of a folder and holds no images."
+            raise InputRefused("FileIndex", message, "Give the folder that it lies in.")
 
         # each format's library is loaded only where it is needed
         if path.is_dir() or (path.is_file() and _looks_like_dicom(path)):

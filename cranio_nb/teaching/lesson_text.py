@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import jupytext
@@ -104,16 +104,17 @@ def make_notebook(cells: Sequence[NotebookNode]) -> NotebookNode:
     return nbformat.v4.new_notebook(cells=list(cells), metadata=METADATA)
 
 
-def cell_ids(cells: Sequence[NotebookNode]) -> list[str]:
-    """Id of each cell, from its text and how often that was there before.
+def cell_ids(cells: Iterable[NotebookNode]) -> list[str]:
+    """Names of cells that follow from their texts.
 
     Parameters
     ----------
-    cells : sequence of NotebookNode
+    cells : iterable of NotebookNode
 
     Returns
     -------
     list of str
+        Each of 12 letters and digits; cells of one text have different ones.
     """
     seen: dict[str, int] = {}
     found = []

@@ -14,6 +14,7 @@ from pydicom.uid import (
     ExplicitVRBigEndian,
     ExplicitVRLittleEndian,
     ImplicitVRLittleEndian,
+    UID_dictionary,
 )
 
 from ...errors import InputRefused
@@ -198,7 +199,8 @@ def _place(header: SliceHeader, index: int) -> PixelPlace:
 
 
 def _uid(syntax: str) -> str:
-    return "".join(c for c in syntax if c.isdigit() or c == ".")[:64]
+    """The number of a transfer syntax; what the standard does not list may be anything and is not shown."""
+    return syntax if syntax in UID_dictionary else "of an unknown number"
 
 
 def _corrupt(index: int, what: str) -> InputRefused:

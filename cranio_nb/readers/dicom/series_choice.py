@@ -5,6 +5,7 @@ Images belong together when series, size, spacing, orientation and kind of image
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -21,6 +22,8 @@ _CT = ("CT", "")
 _STRAY = 3  # so few images are a scout or a reference picture, not a scan
 _HEAD_HEIGHT_MM = 150.0  # mm: a taller scan has no advantage over another
 _DIRECTION_TOL = 1e-4
+_MAX_SERIES_NUMBER = 99_999  # a longer one may be anything, a birth date among others
+_SOFT = ("SOFT", "SMOOTH", "STANDARD", "BRAIN", "STND")
 _FOLDER_REMEDY = "Give the folder that holds only the wanted series."
 
 
@@ -49,11 +52,24 @@ class Candidate:
 
     @property
     def label(self) -> str:
-        """How it is called in messages: numbers only."""
+        """How it is called in messages: numbers and fixed words only, whatever the header says."""
         first = self.headers[0]
-        kernel = f", kernel {first.kernel}" if first.kernel else ""
-        number = "" if first.series_number is None else f"series {first.series_number}: "
+        kind = describe_kernel(first.kernel)
+        kernel = "" if kind == "unknown" else f", {kind} kernel"
+        number = "" if self.number is None else f"series {self.number}: "
         return f"{number}{len(self.headers)} slices of {first.rows} x {first.cols}, {self.step:.2f} mm apart{kernel}"
+
+    @property
+    def number(self) -> int | None:
+        """The series number.
+
+        Returns
+        -------
+        int or None
+            None where there is none, or where it is longer than such numbers are.
+        """
+        number = self.headers[0].series_number
+        return number if number is not None and 0 <= number <= _MAX_SERIES_NUMBER else None
 
 
 def choose_series(headers: list[SliceHeader], allow: Collection[str] = ()) -> tuple[list[SliceHeader], list[Finding]]:
@@ -232,6 +248,29 @@ def _best(candidates: list[Candidate]) -> Candidate:
     return smooth[0]
 
 
+def describe_kernel(kernel: str) -> str:
+    """What may be said of a kernel: a maker's name for it is text of the header.
+
+    Parameters
+    ----------
+    kernel : str
+
+    Returns
+    -------
+    {"sharp", "soft", "unknown"}
+
+    Examples
+    --------
+    >>> [describe_kernel(name) for name in ("BONE", "H31s", "DOE^JOHN", "")]
+    ['sharp', 'soft', 'unknown', 'unknown']
+    """
+    name = kernel.upper()
+    if _is_sharp(name):
+        return "sharp"
+    coded = re.fullmatch(r"(H|B|J|U|HR|BR|HC|BL|FC)\d\d?.{0,3}(/\d)?", name)
+    return "soft" if coded or name in _SOFT or name in ("UA", "UB", "UC") else "unknown"
+
+
 def _is_sharp(kernel: str) -> bool:
     """Whether a kernel's name is one of the makers' for edges: bone, lung, or a high number."""
     # by its own name
@@ -295,7 +334,7 @@ def _report(
 ) -> list[Finding]:
     """What was chosen, and what was left and why."""
     first = chosen.headers[0]
-    values = {"slices": len(chosen.headers), "step_mm": round(chosen.step, 4), "series": first.series_number}
+    values = {"slices": len(chosen.headers), "step_mm": round(chosen.step, 4), "series": chosen.number}
     findings = [Finding("SeriesChosen", "info", f"Read {chosen.label}.", values)]
     findings += [Finding("SeriesSkipped", "info", f"Left {c.label}.", {"slices": len(c.headers)}) for c in rest]
     for group in strays:
