@@ -6,6 +6,9 @@ The format is checked before anything is decoded.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from typing import BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,13 +104,68 @@ def read_pixels(header: SliceHeader, index: int) -> NDArray[np.integer]:
     >>> bool((read_pixels(header, 0) + header.intercept == hu[5]).all())
     True
     """
-    try:
-        place = _place(header, index)
-        pixels = _native(header, place, index) if place.syntax in _NATIVE else decode(header, place)
-    except InputRefused:
-        raise
-    except Exception as error:
-        raise _corrupt(index, f"cannot be decoded ({type(error).__name__})") from None
+    return next(pixels for _, pixels in read_stack([header], [index]))
+
+
+def read_stack(
+    headers: Sequence[SliceHeader], indices: Sequence[int] | None = None
+) -> Iterator[tuple[int, NDArray[np.integer]]]:
+    """Read the numbers of many images as stored, file by file, so that each file is opened (and inflated) once.
+
+    Parameters
+    ----------
+    headers : sequence of SliceHeader
+        Of images that passed `check_format`.
+    indices : sequence of int, optional
+        The slices' numbers in messages; by default their places in `headers`.
+
+    Yields
+    ------
+    place : int
+        Of the image in `headers`.
+    pixels : ndarray of int, shape (rows, cols)
+        As by `read_pixels`.
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptPixelData`` naming the slice.
+
+    Examples
+    --------
+    >>> from data_synth import write_dicom
+    >>> from .parse import parse_file
+    >>> from .slice_header import read_headers
+    >>> files = write_dicom("scan", np.zeros((8, 4, 4), np.int16), np.eye(4)[[2, 1, 0, 3]])
+    >>> headers = [header for i, file in enumerate(files) for header in read_headers(*parse_file(file, i), i)]
+    >>> [place for place, _ in read_stack(headers[::-1])]
+    [7, 6, 5, 4, 3, 2, 1, 0]
+    """
+    indices = range(len(headers)) if indices is None else indices
+    order = sorted(range(len(headers)), key=lambda i: (headers[i].file, headers[i].frame))
+    for _, group in groupby(order, key=lambda i: headers[i].file):
+        places = list(group)
+        place = _place(headers[places[0]], indices[places[0]])
+        with open(place.path, "rb") as stream:
+            data = None
+            for i in places:
+                try:
+                    data = data or _opened(stream, place)
+                    yield i, _pixels(headers[i], place, data, indices[i])
+                except InputRefused:
+                    raise
+                except Exception as error:
+                    raise _corrupt(indices[i], f"cannot be decoded ({type(error).__name__})") from None
+
+
+def _opened(stream: BinaryIO, place: PixelPlace) -> BinaryIO:
+    """The stream in which a place's offset counts: inflated, where the file is deflated."""
+    return open_dataset(stream, place.file)[1] if place.syntax == DeflatedExplicitVRLittleEndian else stream
+
+
+def _pixels(header: SliceHeader, place: PixelPlace, data: BinaryIO, index: int) -> NDArray[np.integer]:
+    """The stored numbers of one image of an open file."""
+    pixels = _native(header, place, data, index) if place.syntax in _NATIVE else decode(header, place, data)
     if pixels.shape != (header.rows, header.cols):
         raise _corrupt(index, f"decodes to {pixels.shape} pixels instead of {(header.rows, header.cols)}")
     return pixels
@@ -163,16 +221,11 @@ def clear_unused_bits(stored: NDArray[np.integer], header: SliceHeader) -> NDArr
     return (stored << up) >> down
 
 
-def _native(header: SliceHeader, place: PixelPlace, index: int) -> NDArray[np.integer]:
+def _native(header: SliceHeader, place: PixelPlace, data: BinaryIO, index: int) -> NDArray[np.integer]:
     """Uncompressed pixels of one frame, in the machine's byte order."""
     size = _frame_bytes(header)
-    with open(place.path, "rb") as stream:
-        if place.syntax == DeflatedExplicitVRLittleEndian:
-            _, data = open_dataset(stream, place.file)
-        else:
-            data = stream
-        data.seek(place.offset + header.frame * size)
-        content = data.read(size)
+    data.seek(place.offset + header.frame * size)
+    content = data.read(size)
     if len(content) != size:
         raise _corrupt(index, "is cut short")
     order = ">" if place.syntax == ExplicitVRBigEndian else "<"

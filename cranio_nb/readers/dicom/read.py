@@ -18,13 +18,13 @@ from ..load_report import Finding, LoadReport
 from ..regrid import resample_planes, slide_slices
 from .codecs import LOSSY
 from .duplicates import keep_one_per_position
-from .file_list import IMAGE_SUFFIXES, list_files
 from .geometry import Stack, build_stack
-from .parse import MAX_SLICES, parse_file
-from .pixel_data import check_format, read_pixels
+from .parse import MAX_SLICES
+from .pixel_data import check_format, read_stack
 from .rescale import apply_rescale, check_levels, check_rescale, check_unscaled
+from .scan import Contents, leave_unread, scan
 from .series_choice import choose_series
-from .slice_header import SliceHeader, read_headers
+from .slice_header import SliceHeader
 from .steps import Plan, plan_steps
 
 MAX_BYTES = 2**31  # of the voxels
@@ -68,9 +68,9 @@ def read_dicom(
     (True, array([2.5, 0.5, 0.5]), ['SeriesChosen'])
     """
     # what the headers say: which images are the scan, and in which order
-    headers, findings = _all_headers(path)
-    series, more = choose_series(headers, allow)
-    findings += more
+    contents, findings = scan(path)
+    series, more = _choose(contents, allow)
+    findings += more + leave_unread(contents, series)
     slices, more = keep_one_per_position(series, allow)
     findings += more
     if path.is_file() and len(slices) < 2:
@@ -88,28 +88,15 @@ def read_dicom(
     return _finish(voxels, affine, plan.corner_error, tuple(findings + more))
 
 
-def _all_headers(path: Path) -> tuple[list[SliceHeader], list[Finding]]:
-    """Headers of all images of a folder or file, and what else lies there."""
-    files, findings = ([path], []) if path.is_file() else list_files(path)
-    headers: list[SliceHeader] = []
-    others: list[Path] = []
-    empty = 0
-    for index, file in enumerate(files):
-        scanned = parse_file(file, index)
-        images = read_headers(*scanned, index) if scanned else []
-        headers += images
-        if scanned is None:
-            others.append(file)
-        elif not images:
-            empty += 1
-    if others:
-        misnamed = any(file.suffix.lower() in IMAGE_SUFFIXES for file in others)
-        message = f"{len(others)} of {len(files)} files are not DICOM and were left."
-        findings.append(Finding("FilesSkipped", "warning" if misnamed else "info", message, {"not_dicom": len(others)}))
-    if empty:
-        message = f"{empty} of {len(files)} files hold no image and were left."
-        findings.append(Finding("FilesSkipped", "info", message, {"no_image": empty}))
-    return headers, findings
+def _choose(contents: Contents, allow: Collection[str]) -> tuple[list[SliceHeader], list[Finding]]:
+    """The slices of the scan; where there are none, the damage is what to say."""
+    try:
+        return choose_series(contents.headers, allow)
+    except InputRefused as error:
+        damaged = [unread.error for unread in contents.unread if unread.error is not None]
+        if error.code == "NoImages" and damaged:
+            raise damaged[0] from None
+        raise
 
 
 def _check_formats(stack: Stack) -> None:
@@ -151,14 +138,15 @@ def _decode(stack: Stack, pairs: NDArray[np.float64], progress: Progress | None)
     headers = stack.headers
     voxels = np.empty((len(headers), headers[0].rows, headers[0].cols), np.int16)
     padded = 0
-    for index, (header, (slope, intercept)) in enumerate(zip(headers, pairs, strict=True)):
-        hu, padding = apply_rescale(read_pixels(header, index), header, slope, intercept)
-        if hu.dtype != voxels.dtype:
+    for done, (index, pixels) in enumerate(read_stack(headers), start=1):
+        hu, padding = apply_rescale(pixels, headers[index], *pairs[index])
+        if hu.dtype.kind == "f" and voxels.dtype.kind == "i":
+            # once: a slice of whole numbers fits into real ones
             voxels = voxels.astype(np.float32)
         voxels[index] = hu
         padded += 0 if padding is None else int(np.count_nonzero(padding))
         if progress:
-            progress(index + 1, len(headers))
+            progress(done, len(headers))
     return voxels, padded
 
 

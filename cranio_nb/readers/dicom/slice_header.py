@@ -132,6 +132,30 @@ def read_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[
         return _headers_of(dataset, place, file)
 
 
+def count_frames(dataset: Dataset, file: int) -> int:
+    """Count the images that a file declares, before a header is made for each.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Its elements, from `parse.parse_file`.
+    file : int
+        Index among the folder's files.
+
+    Returns
+    -------
+    int
+        0 for a file without images.
+
+    Examples
+    --------
+    >>> count_frames(Dataset(), 0)
+    0
+    """
+    with refusing(file):
+        return int(dataset.get("NumberOfFrames") or 1) if "Rows" in dataset and "Columns" in dataset else 0
+
+
 def _headers_of(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
     if "Rows" not in dataset or "Columns" not in dataset:
         return []
