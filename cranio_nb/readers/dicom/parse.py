@@ -38,10 +38,13 @@ _KEYWORDS = (
     "ContentTime ConvolutionKernel PatientID PatientName PatientBirthDate FrameOfReferenceUID Rows Columns "
     "SamplesPerPixel PhotometricInterpretation BitsAllocated BitsStored HighBit PixelRepresentation NumberOfFrames "
     "PixelSpacing ImagePositionPatient ImageOrientationPatient SliceThickness RescaleSlope RescaleIntercept "
-    "RescaleType ModalityLUTSequence PixelPaddingValue PixelPaddingRangeLimit LossyImageCompression "
-    "SharedFunctionalGroupsSequence PerFrameFunctionalGroupsSequence"
+    "RescaleType GantryDetectorTilt ModalityLUTSequence PixelPaddingValue PixelPaddingRangeLimit "
+    "LossyImageCompression SharedFunctionalGroupsSequence PerFrameFunctionalGroupsSequence"
 ).split()
-_TAGS: list[BaseTag | int] = [BaseTag(tag) for tag in map(tag_for_keyword, _KEYWORDS) if tag is not None]
+OVERLAY_BITS: list[BaseTag | int] = [
+    BaseTag(0x60000102 + 0x20000 * i) for i in range(16)
+]  # which bit of a pixel holds graphics
+_TAGS: list[BaseTag | int] = [*(BaseTag(tag) for tag in map(tag_for_keyword, _KEYWORDS) if tag), *OVERLAY_BITS]
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,7 @@ from pydicom.uid import (
     ExplicitVRBigEndian,
     ExplicitVRLittleEndian,
     ImplicitVRLittleEndian,
+    RLELossless,
 )
 
 from ...errors import InputRefused
@@ -25,6 +26,8 @@ from .parse import UNDEFINED_LENGTH, PixelPlace, open_dataset
 from .slice_header import SliceHeader
 
 _NATIVE = {ImplicitVRLittleEndian, ExplicitVRLittleEndian, ExplicitVRBigEndian, DeflatedExplicitVRLittleEndian}
+
+_PATCHES = 0.75  # of neighbouring pixels that are alike in bits that belong to an image
 
 
 def check_format(header: SliceHeader, index: int) -> None:
@@ -70,7 +73,7 @@ def check_format(header: SliceHeader, index: int) -> None:
     if (place.length == UNDEFINED_LENGTH) != (place.syntax in COMPRESSED):
         raise _corrupt(index, "is labelled with a transfer syntax that its pixel data do not have")
     if place.length != UNDEFINED_LENGTH:
-        _check_size(header, place, index)
+        check_size(header, place, index)
 
 
 def read_pixels(header: SliceHeader, index: int) -> NDArray[np.integer]:
@@ -215,10 +218,59 @@ def clear_unused_bits(stored: NDArray[np.integer], header: SliceHeader) -> NDArr
     array([ True])
     """
     allocated, bits, high = header.bits
-    if bits == allocated or _place(header, 0).syntax in COMPRESSED:
+    if bits == allocated or _place(header, 0).syntax in COMPRESSED - {RLELossless}:
         return stored
     up, down = allocated - 1 - high, allocated - bits
     return (stored << up) >> down
+
+
+def holds_unused_bits(stored: NDArray[np.integer], header: SliceHeader, index: int) -> bool:
+    """Whether bits outside the stored ones are set, and mean nothing.
+
+    Parameters
+    ----------
+    stored : ndarray of int, shape (rows, cols)
+    header : SliceHeader
+        Its `bits`, and its `padding`, which may lie outside them.
+    index : int
+        The slice's number in messages.
+
+    Returns
+    -------
+    bool
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptPixelData`` where these bits are alike in neighbouring pixels, as parts of an image are: the numbers
+        need more bits than they declare.
+
+    Examples
+    --------
+    A ramp up to 4000 needs 12 bits; with 11 it would fall back to 0 on its way:
+
+    >>> from types import SimpleNamespace
+    >>> place = SimpleNamespace(syntax=ExplicitVRLittleEndian)
+    >>> header = SimpleNamespace(bits=(16, 11, 10), place=place, padding=None, overlay=False)
+    >>> holds_unused_bits(np.arange(0, 4000, 100, np.uint16).reshape(1, -1), header, 3)
+    Traceback (most recent call last):
+    cranio_nb.errors.InputRefused: Slice 3 declares 11 bits, but its numbers need more. Copy the scan again ...
+    """
+    kept = clear_unused_bits(stored, header)
+    if kept is stored:
+        return False
+    raw = stored >> (header.bits[2] + 1 - header.bits[1])
+    if header.padding is not None:
+        low, high = header.padding
+        raw = np.where((stored >= low) & (stored <= high), kept, raw)
+    if np.array_equal(raw, kept):
+        return False
+    # bits of an image lie in patches; rubbish differs from pixel to pixel, or is the same everywhere
+    beyond = raw.astype(np.int64) - kept
+    alike = float((beyond[:, 1:] == beyond[:, :-1]).mean()) if beyond.shape[1] > 1 else 1.0
+    if np.ptp(beyond) and alike > _PATCHES and not header.overlay:
+        raise _corrupt(index, f"declares {header.bits[1]} bits, but its numbers need more")
+    return True
 
 
 def _native(header: SliceHeader, place: PixelPlace, data: BinaryIO, index: int) -> NDArray[np.integer]:
@@ -233,11 +285,45 @@ def _native(header: SliceHeader, place: PixelPlace, data: BinaryIO, index: int) 
     return np.frombuffer(content, dtype).reshape(header.rows, header.cols).astype(dtype.newbyteorder("="), copy=False)
 
 
-def _check_size(header: SliceHeader, place: PixelPlace, index: int) -> None:
-    """Refuse pixel data that are shorter than announced, or longer by a row or more."""
-    wanted, row = _frame_bytes(header) * header.frames, header.cols * header.bits[0] // 8
-    if not wanted <= place.length < wanted + max(row, 2):
+def check_size(header: SliceHeader, place: PixelPlace, index: int) -> int:
+    """Check that uncompressed pixel data are as long as announced.
+
+    Parameters
+    ----------
+    header : SliceHeader
+    place : PixelPlace
+        Where its uncompressed pixels lie.
+    index : int
+        The slice's number in messages.
+
+    Returns
+    -------
+    int
+        Bytes beyond those announced, one of padding not counted.
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptPixelData`` where bytes are missing, or where so many are left that a row, a column or a frame more
+        may have been meant.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> header = SimpleNamespace(rows=4, cols=6, samples=1, bits=(16, 16, 15), frames=1)
+    >>> check_size(header, SimpleNamespace(length=48), 0), check_size(header, SimpleNamespace(length=55), 0)
+    (0, 7)
+    >>> check_size(header, SimpleNamespace(length=60), 0)
+    Traceback (most recent call last):
+    cranio_nb.errors.InputRefused: Slice 0 holds 60 bytes of pixels where its header announces 48. Copy the scan ...
+    """
+    wanted, width = _frame_bytes(header) * header.frames, header.bits[0] // 8
+    excess = place.length - wanted
+    sides = [side * width for side in (header.rows, header.cols)]
+    whole = excess >= min(sides) and any(excess % side in (0, 1) for side in sides)
+    if excess < 0 or whole or excess >= wanted // 4:
         raise _corrupt(index, f"holds {place.length} bytes of pixels where its header announces {wanted}")
+    return 0 if excess == 1 and wanted % 2 else excess
 
 
 def _frame_bytes(header: SliceHeader) -> int:

@@ -226,7 +226,7 @@ def leave_unread(contents: Contents, slices: Sequence[SliceHeader]) -> list[Find
 
 def _may_be_slice(unread: Unread, series: set[str], names: set[str], start: bytes) -> bool:
     """Whether a file that was not read may be a slice of the chosen scan."""
-    if unread.series:
+    if unread.series and "" not in series:
         return unread.series in series
     if unread.sop_class not in CT_CLASSES or unread.modality not in ("CT", ""):
         return False
