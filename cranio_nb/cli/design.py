@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from ..methods.catalogue import METHODS, PRESETS
-from .options import PATH, allow, check_not_input, debug, mask, parse_planes, read_params, threshold, truth
+from .options import PATH, allow, check_not_input, debug, label, mask, parse_planes, read_params, threshold, truth
 
 
 @click.command()
@@ -22,6 +22,7 @@ from .options import PATH, allow, check_not_input, debug, mask, parse_planes, re
 @click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
 @truth
 @mask
+@label
 @threshold
 @allow
 @debug
@@ -35,6 +36,7 @@ def design(
     planes: str | None,
     truth: Path | None,
     mask: bool,
+    label: int | None,
     threshold: float | None,
     allow: tuple[str, ...],
 ) -> None:
@@ -66,6 +68,7 @@ def design(
             preset=preset,
             options=options,
             mask=mask or None,
+            label=label,
             threshold=threshold,
             planes=between,
             truth=truth,

@@ -34,6 +34,9 @@ allow = click.option(
 mask = click.option(
     "--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it."
 )
+label = click.option(
+    "--label", type=int, metavar="N", help="Take the voxels of this value as bone: the skull in a map of labels."
+)
 threshold = click.option("--threshold", type=float, metavar="HU", help="Lowest HU of bone.  [default: 400]")
 truth = click.option(
     "--truth", type=PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against."

@@ -96,6 +96,7 @@ def run_design(
     preset: str = "default",
     options: dict[str, Any] | None = None,
     mask: bool | None = None,
+    label: int | None = None,
     threshold: float | None = None,
     planes: tuple[int, int] | None = None,
     truth: str | PathLike[str] | None = None,
@@ -116,6 +117,8 @@ def run_design(
         Options of the method that differ from the preset.
     mask : bool, optional
         As for `read_ct`: True takes every nonzero voxel as bone. By default data of 0 and 1 are a mask.
+    label : int, optional
+        As for `read_ct`: takes the voxels of this value as bone.
     threshold : float, optional
         Lowest HU of bone; `segmentation.BONE_HU` when not given.
     planes : tuple of int, optional
@@ -141,7 +144,9 @@ def run_design(
     options = dict(options or {})
     check_request(method, preset, options)
     tell = progress or (lambda step, done: None)
-    case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=tell)
+    case = prepare(
+        path, mask=mask, label=label, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=tell
+    )
     clock = _Clock(case.seconds)
     made = design_inside(
         case.bone, case.openings, method, preset, options, lambda step, done: tell(step, 0.4 + 0.4 * done)
@@ -161,6 +166,7 @@ def prepare(
     path: str | PathLike[str],
     *,
     mask: bool | None = None,
+    label: int | None = None,
     threshold: float | None = None,
     planes: tuple[int, int] | None = None,
     truth: str | PathLike[str] | None = None,
@@ -171,7 +177,7 @@ def prepare(
     tell = progress or (lambda step, done: None)
     clock = _Clock()
     tell("reading", 0.0)
-    scan, load = read_ct(path, mask=mask, allow=allow, progress=lambda i, n: tell("reading", 0.3 * i / n))
+    scan, load = read_ct(path, mask=mask, label=label, allow=allow, progress=lambda i, n: tell("reading", 0.3 * i / n))
     known = None if truth is None else read_truth(truth, scan)
     clock.lap("read")
     tell("bone", 0.3)
