@@ -81,6 +81,15 @@ def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np
         import imagecodecs
 
         return _signed_as(imagecodecs.jpeg8_decode(frame), header)
+    if place.syntax in _JPEG_LS:
+        import jpeg_ls
+
+        return _signed_as(jpeg_ls.decode(np.frombuffer(frame, np.uint8)), header)
+    return _run_lengths(frame, header)
+
+
+def _run_lengths(frame: bytes, header: SliceHeader) -> NDArray[np.integer]:
+    """The numbers of a run-length coded image."""
     options: dict[str, Any] = {
         "rows": header.rows,
         "columns": header.cols,
@@ -92,9 +101,8 @@ def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np
         "pixel_representation": int(header.signed),
         "pixel_keyword": "PixelData",
     }
-    plugin = "pyjpegls" if place.syntax in _JPEG_LS else "pydicom"
-    decoder = get_decoder(uid.UID(place.syntax))
-    return decoder.as_array(encapsulate([frame], has_bot=False), raw=True, decoding_plugin=plugin, **options)[0]
+    data = encapsulate([frame], has_bot=False)
+    return get_decoder(uid.RLELossless).as_array(data, raw=True, decoding_plugin="pydicom", **options)[0]
 
 
 def _frame_bytes(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> bytes:
@@ -229,6 +237,8 @@ def _frame_marker(frame: bytes) -> tuple[int, int]:
 
 def _signed_as(numbers: NDArray[np.integer], header: SliceHeader) -> NDArray[np.integer]:
     """The same bits read with the header's sign: some encoders write signed data as unsigned."""
+    # in the header's width: a stream of few bits may come in single bytes
+    numbers = numbers.astype(f"{numbers.dtype.kind}{max(numbers.itemsize, header.bits[0] // 8)}", copy=False)
     if (numbers.dtype.kind == "i") == header.signed:
         return numbers
     # shift the sign to the highest bit and back

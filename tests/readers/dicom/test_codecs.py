@@ -3,6 +3,7 @@
 import time
 from pathlib import Path
 
+import jpeg_ls
 import numpy as np
 import pytest
 from dicom_series import head, refusal, save, series
@@ -94,6 +95,20 @@ def test_cut_compressed_stream_is_refused(syntax: str, tmp_path: Path) -> None:
     victim = folder / "image0005.dcm"
     victim.write_bytes(victim.read_bytes()[:-60])
     assert refusal(folder).code == "CorruptPixelData"
+
+
+@pytest.mark.parametrize("signed", [False, True])
+def test_a_stream_of_few_bits_fills_the_whole_number(signed: bool, tmp_path: Path) -> None:
+    # a slice of air needs six bits, and its stream may then hold single bytes
+    hu = head((9, 42, 48))
+    datasets = series(hu, signed=signed, intercept=-1024)
+    for ds in datasets:
+        stored = np.frombuffer(ds.PixelData, "<u2").reshape(ds.Rows, ds.Columns)
+        stored = stored.astype("u1") if stored.max() < 256 else stored
+        ds.PixelData = encapsulate([bytes(jpeg_ls.encode_array(stored))])
+        ds["PixelData"].is_undefined_length = True
+    volume, _ = read_ct(save(tmp_path / "scan", datasets, syntax=JPEGLSLossless))
+    np.testing.assert_array_equal(volume.voxels, hu)
 
 
 def jpeg_series(bits: int, lossless: bool) -> list[Dataset]:
