@@ -262,6 +262,7 @@ class TestReadmeExample:
         exec(compile(block, "README", "exec"), {})
         sound, dice = capsys.readouterr().out.split()
         assert sound == "True" and 0.9 < float(dice) <= 1
-        assert {path.name for path in (tmp_path / "cranio_nb_out" / "by_hand").iterdir()} == set(FILES) - {
-            "report.html"
-        }
+        assert {path.name for path in (tmp_path / "cranio_nb_out" / "by_hand").iterdir()} == {
+            "manifest.json",
+            *FILES,
+        } - {"report.html"}

@@ -14,12 +14,12 @@ from importlib.metadata import PackageNotFoundError, version
 from ..drawing.front_end import proxy
 
 _NEEDED = tuple(
-    "numpy scipy scikit-image pydicom pyjpegls pylibjpeg-openjpeg pylibjpeg-libjpeg nibabel pynrrd trimesh networkx "
+    "numpy scipy scikit-image pydicom pyjpegls pylibjpeg-openjpeg imagecodecs nibabel pynrrd trimesh networkx "
     "lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
 )
 _OPTIONAL = {
     "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
-    "view": ("pyvista", "vtk", "trame-pyvista"),
+    "view": ("pyvista", "vtk", "trame-pyvista", "aiohttp"),
 }
 _MIN_MEMORY_GB = 2.0
 _PLOT = "from matplotlib.backends.backend_agg import FigureCanvasAgg as C; from matplotlib.figure import Figure as F; "

@@ -9,7 +9,7 @@ import click
 
 from ..errors import CranioError
 from ..readers import read_ct
-from .options import PATH, allow, as_json, check_reads, debug, mask, threshold
+from .options import PATH, allow, as_json, check_reads, debug, label, mask, threshold
 
 if TYPE_CHECKING:
     from ..evaluation.opening_size import OpeningSize
@@ -18,11 +18,14 @@ if TYPE_CHECKING:
 @click.command()
 @click.argument("scan", type=PATH, metavar="INPUT")
 @mask
+@label
 @threshold
 @allow
 @as_json
 @debug
-def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, ...], as_json: bool) -> None:
+def inspect(
+    scan: Path, mask: bool, label: int | None, threshold: float | None, allow: tuple[str, ...], as_json: bool
+) -> None:
     """Show how a scan is read and which openings its skull has.
 
     \b
@@ -38,7 +41,9 @@ def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, .
 
     check_reads(scan=scan)
     with progress_bar() as progress:
-        volume, load = read_ct(scan, mask=mask or None, allow=allow, progress=lambda i, n: progress("reading", i / n))
+        volume, load = read_ct(
+            scan, mask=mask or None, label=label, allow=allow, progress=lambda i, n: progress("reading", i / n)
+        )
     # what was read is printed also where the skull is refused; the refusal ends the command
     problem: CranioError | None = None
     sizes: list[OpeningSize] = []

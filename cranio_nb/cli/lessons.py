@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, debug
+from .options import PATH, check_writes, debug
 
 
 @click.group()
@@ -35,9 +35,13 @@ def build(folder: Path, only: str, check: bool) -> None:
       cranio-nb lessons build --check
     """
     from ..teaching.build import build as make
-    from ..teaching.build import out_of_step
+    from ..teaching.build import is_built, out_of_step
 
     if not check:
+        sources = sorted((folder / "src").glob(f"{only}*.py"))
+        names = [f"{home}{path.stem}.ipynb" for path in sources for home in ("", "exercises/")]
+        reads = {f"src/{path.name}": path for path in sources}
+        check_writes(folder, names, reads, own=lambda home, name: is_built(home / name))
         for path in make(folder, only):
             click.echo(path)
         return
@@ -61,6 +65,8 @@ def html(out: Path, folder: Path) -> None:
     """
     from ..teaching.web_pages import write_pages
 
+    notebooks = sorted(folder.glob("*.ipynb"))
+    check_writes(out, [f"{path.stem}.html" for path in notebooks], {path.name: path for path in notebooks})
     for path in write_pages(folder, out):
         click.echo(path)
 

@@ -6,6 +6,7 @@ Nothing here loads more than click and the names of the methods, so that `--help
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any
@@ -16,7 +17,34 @@ from ..errors import CannotWrite, InputRefused
 from ..methods.catalogue import check_options
 from ..readers import ALLOWANCES
 
-PATH = click.Path(path_type=Path)
+
+class UserPath(click.Path):
+    """A path of the command line; a "~" that the shell left there is the home folder here, too."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Turn a word into a path.
+
+        Parameters
+        ----------
+        value, param, ctx
+            As for `click.ParamType.convert`.
+
+        Returns
+        -------
+        Path
+
+        Examples
+        --------
+        >>> PATH.convert("scans/head_ct", None, None).name
+        'head_ct'
+        """
+        return super().convert(os.path.expanduser(value), param, ctx)
+
+
+PATH = UserPath(path_type=Path)
+"""Of every path on the command line."""
+THRESHOLDS_HU = (50.0, 3000.0)
+"""Between which a threshold of bone makes sense: above soft tissue and below metal."""
 SIZES = ("tiny", "class", "full")
 """Grids of the synthetic head."""
 CASE = ("ct", "mask.nii.gz", "truth.nii.gz", "truth.json")
@@ -28,6 +56,16 @@ def _set_debug(ctx: click.Context, _: click.Parameter, value: bool) -> None:
     ctx.meta["debug"] = ctx.meta.get("debug", False) or value
 
 
+def _check_threshold(_: click.Context, __: click.Parameter, value: float | None) -> float | None:
+    """Refuse a threshold that would take air or soft tissue for bone, or find none."""
+    low, high = THRESHOLDS_HU
+    if value is not None and not low <= value <= high:  # not a number is none of them, either
+        what = "air or soft tissue" if value < low else "no bone"
+        message = f"{value:g} HU would find {what}; bone begins at some 150 to 700 HU. Give {low:g} to {high:g}."
+        raise click.BadParameter(message)
+    return value
+
+
 debug = click.option(
     "--debug", is_flag=True, expose_value=False, callback=_set_debug, help="Show where an error came from."
 )
@@ -37,7 +75,12 @@ allow = click.option(
 mask = click.option(
     "--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it."
 )
-threshold = click.option("--threshold", type=float, metavar="HU", help="Lowest HU of bone.  [default: 400]")
+label = click.option(
+    "--label", type=int, metavar="N", help="Take the voxels of this value as bone: the skull in a map of labels."
+)
+threshold = click.option(
+    "--threshold", type=float, metavar="HU", callback=_check_threshold, help="Lowest HU of bone.  [default: 400]"
+)
 truth = click.option(
     "--truth", type=PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against."
 )
@@ -168,4 +211,7 @@ def check_writes(out: Path, names: Collection[str], reads: Mapping[str, Path | N
 def _named(reads: Mapping[str, Path | None]) -> dict[str, Path | None]:
     """The paths by what they are called on the command line."""
     called = {"scan": "INPUT", "from_": "--from", "patch": "PATCH"}
-    return {called.get(name, f"--{name}" if name.islower() else name): path for name, path in reads.items()}
+    return {
+        called.get(name, f"--{name}" if name.isidentifier() and name.islower() else name): path
+        for name, path in reads.items()
+    }

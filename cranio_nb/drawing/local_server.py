@@ -17,7 +17,7 @@ HOST = "127.0.0.1"
 """Address it listens on."""
 _LOCAL = ("127.0.0.1", "localhost")
 _SOCKET = "/ws"
-_FRAMES = " ".join(f"http{s}://{host}:*" for host in _LOCAL for s in ("", "s"))
+_FRAMES = " ".join(f"{scheme}://{host}:*" for host in _LOCAL for scheme in ("http", "https"))
 HEADERS = {
     "X-Content-Type-Options": "nosniff",
     "Referrer-Policy": "no-referrer",
@@ -79,13 +79,14 @@ def is_local_request(hosts: list[str], origins: list[str], port: int, *, socket:
     --------
     >>> is_local_request(["localhost:8080"], ["http://localhost:8080"], 8080, socket=True)
     True
-    >>> is_local_request(["localhost:8080"], ["http://elsewhere.org"], 8080, socket=True)
+    >>> is_local_request(["localhost:8080"], ["null"], 8080, socket=True)
     False
     """
     known = {f"{name}:{port}" for name in _LOCAL}
     if len(hosts) != 1 or hosts[0] not in known or len(origins) > 1:
         return False
-    return origins[0] in {f"http://{host}" for host in known} if origins else not socket
+    scheme, _, page = origins[0].partition("://") if origins else ("", "", "")
+    return (scheme == "http" and page in known) if origins else not socket
 
 
 def _checked() -> Callable[..., Any]:

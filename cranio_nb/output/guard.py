@@ -95,10 +95,10 @@ def check_writes(
     Traceback (most recent call last):
     cranio_nb.errors.CannotWrite: The output a.txt would replace what is read as INPUT. Name another folder.
     """
-    reads = {name: path for name, path in (reads or {}).items() if path is not None}
-    check_reads(reads)
+    given = {name: path for name, path in (reads or {}).items() if path is not None}
+    check_reads(given)
     _check_names(folder, names)
-    _check_overlap(folder, (*names, MANIFEST), reads)
+    _check_overlap(folder, (*names, MANIFEST), given)
     check_folder(folder, names)
     for place in (folder, folder.absolute().parent):
         sweep(place)

@@ -202,7 +202,7 @@ def _new_part(place: Path) -> tuple[Path, IO[bytes]]:
     while True:
         part = Path(tempfile.mkdtemp(prefix=PREFIX, dir=place))
         try:
-            lock = open(part / "lock", "wb")  # noqa: SIM115  (held as long as the folder)
+            lock = open(part / "lock", "wb")
         except FileNotFoundError:  # swept between the two lines
             continue
         if _hold(lock) and (part / "lock").exists():

@@ -48,6 +48,7 @@ def prepare(
     path: str | PathLike[str],
     *,
     mask: bool | None = None,
+    label: int | None = None,
     threshold: float | None = None,
     planes: tuple[int, int] | None = None,
     truth: str | PathLike[str] | None = None,
@@ -62,6 +63,8 @@ def prepare(
         DICOM folder, NIfTI or NRRD file with a CT in HU or a bone mask.
     mask : bool, optional
         As for `read_ct`: True takes every nonzero voxel as bone. By default data of 0 and 1 are a mask.
+    label : int, optional
+        As for `read_ct`: the voxels of this value are bone.
     threshold : float, optional
         Lowest HU of bone; `segmentation.BONE_HU` when not given.
     planes : tuple of int, optional
@@ -98,7 +101,9 @@ def prepare(
     report = progress or (lambda step, done: None)
     clock = Clock()
     report("reading", 0.0)
-    scan, load = read_ct(path, mask=mask, allow=allow, progress=lambda i, n: report("reading", 0.3 * i / n))
+    scan, load = read_ct(
+        path, mask=mask, label=label, allow=allow, progress=lambda i, n: report("reading", 0.3 * i / n)
+    )
     known = None if truth is None else read_ct(truth, mask=True)[0]
     if known is not None:
         check_truth_mask(known, scan)

@@ -15,7 +15,17 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from ..grid import Affine
 from .load_report import Finding
-from .stored_image import Image, check_rest, check_shape, no_orientation, read_exactly
+from .stored_image import (
+    BZIP2_PACKING,
+    GZIP_PACKING,
+    Image,
+    check_promise,
+    check_rest,
+    check_shape,
+    no_orientation,
+    read_exactly,
+    stored_bytes,
+)
 
 # sign of (x, y, z) from the file's frame to LPS
 _SPACES = {
@@ -28,6 +38,8 @@ _SPACES = {
 }
 _MM_PER_UNIT = {"mm": 1.0, "millimeter": 1.0, "cm": 10.0, "m": 1000.0, "um": 1e-3, "": 1.0}
 _ENCODINGS = {"raw", "gzip", "gz", "bzip2", "bz2"}
+_OTHER_ENCODINGS = {"txt", "text", "ascii", "hex", "zrl"}
+_OTHER_TYPES = {"block"}
 _TYPES = {
     "i1": ("signed char", "int8", "int8_t"),
     "u1": ("uchar", "unsigned char", "uint8", "uint8_t"),
@@ -130,8 +142,10 @@ def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[
     # what is skipped or coded otherwise would be misread
     skips = [int(header.get(name, 0)) for name in ("line skip", "lineskip", "byte skip", "byteskip")]
     if encoding not in _ENCODINGS or any(skips):
-        what = "skips lines or bytes" if any(skips) else f"has the encoding {_plain(encoding)}"
+        what = "skips lines or bytes" if any(skips) else f"has {_known(encoding, _OTHER_ENCODINGS)} encoding"
         raise _unsupported(what)
+    packing = 1 if encoding == "raw" else BZIP2_PACKING if encoding.startswith("b") else GZIP_PACKING
+    check_promise(count, stored_bytes(stream) - stream.tell(), packing=packing)
     data = stream
     if encoding in ("gzip", "gz"):
         data = cast(BinaryIO, gzip.GzipFile(fileobj=stream))
@@ -147,7 +161,7 @@ def _dtype(header: dict[str, Any]) -> np.dtype:
     """Type and byte order of the voxels."""
     name = str(header["type"]).lower().strip()
     if name not in _DTYPES:
-        raise _unsupported(f"has voxels of the type {_plain(name)}", "UnsupportedPixels")
+        raise _unsupported(f"has voxels of {_known(name, _OTHER_TYPES)} type", "UnsupportedPixels")
     dtype = np.dtype(_DTYPES[name])
     endian = str(header.get("endian", "")).lower()
     if dtype.itemsize > 1 and endian not in ("little", "big"):
@@ -206,9 +220,9 @@ def _unit(header: dict[str, Any]) -> float:
     return _MM_PER_UNIT[units.pop()]
 
 
-def _plain(text: str) -> str:
-    """A word of the file, cut down to characters that are safe to show."""
-    return "".join(c for c in text if c.isascii() and (c.isalnum() or c in " -_"))[:24]
+def _known(text: str, words: Collection[str]) -> str:
+    """A word of the format with its article; what is none of its words is not shown."""
+    return f"the {text}" if text in words else "an unknown"
 
 
 def _corrupt(what: str) -> InputRefused:

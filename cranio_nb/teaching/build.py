@@ -19,7 +19,7 @@ from nbclient.exceptions import CellExecutionError
 from nbformat import NotebookNode
 
 from ..errors import CannotWrite, InputRefused
-from .lesson_text import METADATA, read_lesson, tags
+from .lesson_text import METADATA, cell_ids, read_lesson, tags
 from .student_copy import exercise_copy
 
 _QUIET = {"CRANIO_NB_MODE": "static", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TQDM_DISABLE": "1"}
@@ -52,6 +52,25 @@ def build(folder: Path, only: str = "") -> list[Path]:
         _write(path, notebook)
         made.append(path)
     return made
+
+
+def is_built(path: Path) -> bool:
+    """Whether a notebook is as `build` made it, but for its outputs: nobody wrote into its cells.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    bool
+        False also for what is no notebook.
+    """
+    try:
+        cells = nbformat.read(path, as_version=4).cells
+        return [cell.get("id") for cell in cells] == cell_ids(cells)
+    except Exception:  # whatever a damaged file makes the reader raise
+        return False
 
 
 def out_of_step(folder: Path, only: str = "") -> list[str]:

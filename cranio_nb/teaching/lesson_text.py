@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import jupytext
@@ -99,11 +99,29 @@ def make_notebook(cells: Sequence[NotebookNode]) -> NotebookNode:
     >>> one == other, one.cells[0].id == one.cells[1].id
     (True, False)
     """
+    for cell, name in zip(cells, cell_ids(cells), strict=True):
+        cell.id = name
+    return nbformat.v4.new_notebook(cells=list(cells), metadata=METADATA)
+
+
+def cell_ids(cells: Iterable[NotebookNode]) -> list[str]:
+    """Names of cells that follow from their texts.
+
+    Parameters
+    ----------
+    cells : iterable of NotebookNode
+
+    Returns
+    -------
+    list of str
+        Each of 12 letters and digits; cells of one text have different ones.
+    """
     seen: dict[str, int] = {}
+    found = []
     for cell in cells:
         n = seen[cell.source] = seen.get(cell.source, 0) + 1
-        cell.id = hashlib.sha256(f"{n} {cell.cell_type} {cell.source}".encode()).hexdigest()[:12]
-    return nbformat.v4.new_notebook(cells=list(cells), metadata=METADATA)
+        found.append(hashlib.sha256(f"{n} {cell.cell_type} {cell.source}".encode()).hexdigest()[:12])
+    return found
 
 
 def _check_solutions(name: str, cells: list[NotebookNode]) -> None:

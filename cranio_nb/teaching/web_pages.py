@@ -12,7 +12,8 @@ import nbformat
 from jinja2 import DictLoader
 from nbconvert import HTMLExporter
 
-from ..errors import CannotWrite, InputRefused
+from ..errors import InputRefused
+from ..output.staging import staged
 
 _PICTURE = """
 {%- extends 'lab/index.html.j2' -%}
@@ -56,11 +57,8 @@ def write_pages(folder: Path, out: Path) -> list[Path]:
         extra_loaders=[DictLoader({"described.html.j2": _PICTURE})], template_file="described.html.j2"
     )
     pages = {path.stem: exporter.from_notebook_node(nbformat.read(path, as_version=4))[0] for path in notebooks}
-    # written only when all pages are made
-    try:
-        out.mkdir(parents=True, exist_ok=True)
+    # written only when all pages are made, and together
+    with staged(out) as part:
         for name, text in pages.items():
-            (out / f"{name}.html").write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise CannotWrite("CannotWrite", f"The pages could not be written ({type(error).__name__}).") from None
+            (part / f"{name}.html").write_text(text, encoding="utf-8")
     return [out / f"{name}.html" for name in pages]

@@ -8,6 +8,7 @@ import itertools
 import os
 from pathlib import Path
 
+import nbformat
 import pytest
 from cli_runs import cranio, digest
 
@@ -15,9 +16,10 @@ from cranio_nb.cli import compare as compare_command
 from cranio_nb.cli import console, phantom
 from cranio_nb.output import comparison_folder, design_folder
 from cranio_nb.output.manifest import read_manifest
-from cranio_nb.pipeline import compare, run
+from cranio_nb.pipeline import compare, preparation, run
 from cranio_nb.prior import file as prior_file
 from cranio_nb.prior import learning, study
+from cranio_nb.teaching import build
 from data_synth import files as case_files
 
 DESIGN, COMPARISON = (*design_folder.FILES, "manifest.json"), (*comparison_folder.FILES, "manifest.json")
@@ -36,8 +38,8 @@ def no_work(monkeypatch):
     """Commands write small files in place of what takes time to make."""
 
     def write(names):
-        def written(_, folder, *__):
-            folder, what = (_, folder) if isinstance(_, Path) else (folder, _)
+        def written(*given):
+            folder = next(each for each in given if isinstance(each, Path))
             for name in names:
                 (folder / name).parent.mkdir(exist_ok=True)
                 (folder / name).write_text("new")
@@ -46,7 +48,7 @@ def no_work(monkeypatch):
 
     for module, name, stand_in in (
         (run, "run_design", lambda *a, **k: Made()),
-        (run, "prepare", lambda *a, **k: Made()),
+        (preparation, "prepare", lambda *a, **k: Made()),
         (compare, "compare", lambda *a, **k: Made()),
         (compare_command, "_print", lambda *a: None),
         (console, "print_result", lambda *a: None),
@@ -133,7 +135,7 @@ def test_an_input_among_the_outputs_is_never_replaced(kind, name, other, place):
     read = Path("o") / name
     fill(read, "{}")
     read, out = alias(other, read)
-    Path("params.json").write_text('{"prior": "%s"}' % read)
+    Path("params.json").write_text(f'{{"prior": "{read}"}}')
     before = digest(place)
     result = cranio(*command(kind, read, out))
     assert result.exit_code == 2 and "would replace what is read" in " ".join(result.stderr.split()), result.output
@@ -219,6 +221,46 @@ def test_a_prior_replaces_priors_only(out, place):
     assert result.exit_code in (2, 5) and digest(place) == before, result.output
     assert cranio("prior", "learn", "scans", "--out", "scans/prior.npz").exit_code == 0
     assert kept(before, place)
+
+
+LESSON = "# %% [markdown]\n# # One\n\n# %%\n1 + 1\n"
+
+
+def test_a_notebook_that_somebody_wrote_into_is_not_built_over(place, monkeypatch):
+    monkeypatch.setattr(build, "execute", lambda notebook: notebook)
+    fill(Path("notebooks/src/01_one.py"), LESSON)
+    for _ in range(2):
+        assert cranio("lessons", "build").exit_code == 0
+    filled = Path("notebooks/exercises/01_one.ipynb")
+    filled.write_text(filled.read_text().replace("1 + 1", "1 + 1  # my answer"))
+    before = digest(place)
+    result = cranio("lessons", "build")
+    assert result.exit_code == 5 and "exercises/01_one.ipynb" in result.stderr and digest(place) == before
+
+
+@pytest.mark.parametrize("name", ["notebooks/01_one.ipynb", "notebooks/exercises/01_one.ipynb"])
+@pytest.mark.parametrize("link", [os.link, lambda target, name: Path(name).symlink_to(Path(target).absolute())])
+def test_a_lesson_is_not_built_over_its_text(name, link, place):
+    fill(Path("notebooks/src/01_one.py"), LESSON)
+    Path("notebooks/exercises").mkdir()
+    link("notebooks/src/01_one.py", name)
+    before = digest(place)
+    assert cranio("lessons", "build").exit_code == 2 and digest(place) == before
+
+
+def test_pages_replace_pages_only(place, monkeypatch):
+    fill(Path("notebooks/a.ipynb"), nbformat.writes(nbformat.v4.new_notebook()))
+    for out in ("pages", "notebooks"):
+        for _ in range(2):
+            assert cranio("lessons", "html", out).exit_code == 0
+    Path("mine").mkdir()
+    fill(Path("mine/a.html"), "mine")
+    Path("linked").mkdir()
+    os.link("notebooks/a.ipynb", "linked/a.html")
+    before = digest(place)
+    assert cranio("lessons", "html", "mine").exit_code == 5
+    assert cranio("lessons", "html", "linked").exit_code == 2
+    assert digest(place) == before
 
 
 def test_what_only_reads_says_which_path_is_missing(place):

