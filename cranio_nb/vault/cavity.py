@@ -1,4 +1,4 @@
-"""The cranial cavity of a head that may lie in any way: a bone mask comes in -> a point well inside the cavity goes out.
+"""The cranial cavity of a head that may lie in any way: a bone mask comes in -> a point well inside it goes out.
 
 Frame: the grid's own, mm along (left, back, up) as `orientation.head_axes` has them; nothing depends on the header
 but the spacing.

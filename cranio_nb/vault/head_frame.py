@@ -51,8 +51,8 @@ class HeadFrame:
     ----------
     centre : ndarray, shape (3,)
         In the middle of the cavity, on the midline; world mm.
-    axes : ndarray, shape (3, 3)
-        Rows: the head's left, back and up; orthonormal, world.
+    axes, grid_axes : ndarray, shape (3, 3)
+        Rows: the head's left, back and up; orthonormal, world. By the bone, and by the scan.
     confidence : float
         0 to 1: how far the axes can be trusted. 0 where no face is in sight; the axes are then those of the grid.
     asymmetry : float
@@ -65,24 +65,32 @@ class HeadFrame:
 
     centre: Array
     axes: Array
+    grid_axes: Array
     confidence: float
     asymmetry: float
     spread: float
     reason: str
 
-    def angle_from(self, axes: Array) -> float:
-        """Degrees between the head's top and that of other axes.
+    @property
+    def trusted_axes(self) -> Array:
+        """The head's axes by the bone where it shows them, else by the scan.
 
-        Parameters
-        ----------
-        axes : ndarray, shape (3, 3)
-            Rows: left, back, up.
+        Returns
+        -------
+        ndarray, shape (3, 3)
+        """
+        return self.axes if self.confidence >= _SURE else self.grid_axes
+
+    @property
+    def tilt_deg(self) -> float:
+        """Angle between the head's top and that of the scan.
 
         Returns
         -------
         float
+            Degrees.
         """
-        return float(np.degrees(np.arccos(np.clip(self.axes[2] @ axes[2], -1, 1))))
+        return float(np.degrees(np.arccos(np.clip(self.axes[2] @ self.grid_axes[2], -1, 1))))
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,14 +147,18 @@ def find_head_frame(bone: Volume) -> HeadFrame:
     walls = measure_walls(local, centre)
     if np.linalg.norm(walls.face) < _FACE_MM:
         middle = bone.to_world(local.to_voxel(centre))
-        return HeadFrame(middle, grid_axes, 0.0, np.nan, np.nan, "No face is in sight; the scan's own axes are used.")
+        return HeadFrame(
+            middle, grid_axes, grid_axes, 0.0, np.nan, np.nan, "No face is in sight; the scan's own axes are used."
+        )
     normal, shift, asymmetry = _midline(coarse, centre, walls.face)
     centre = centre + shift * normal
     axes, spread, brow = _nod(measure_walls(local, centre), normal)
     agreement = [1.5 - spread / _SPREAD_DEG, 2 - asymmetry / _ASYMMETRY_MM, brow / _BROW_SURE]
     confidence = float(np.clip(agreement, 0, 1).min())
     reason = _AGREE if confidence >= _SURE else _DISAGREE
-    return HeadFrame(bone.to_world(local.to_voxel(centre)), axes @ grid_axes, confidence, asymmetry, spread, reason)
+    return HeadFrame(
+        bone.to_world(local.to_voxel(centre)), axes @ grid_axes, grid_axes, confidence, asymmetry, spread, reason
+    )
 
 
 def _on_own_axes(bone: Volume, grid_axes: Array) -> Volume:
@@ -273,7 +285,10 @@ def _brow_side(walls: Walls, normal: Array, face: Array, ahead: Array) -> float:
 
     def contrast(values: Array, low: float, high: float) -> float:
         sides = [near & (low < side * angle) & (side * angle < high) & np.isfinite(values) for side in (1, -1)]
-        front, rear = (float(np.median(values[s]) if values is walls.first else values[s].mean()) if s.any() else np.nan for s in sides)
+        front, rear = (
+            float(np.median(values[s]) if values is walls.first else values[s].mean()) if s.any() else np.nan
+            for s in sides
+        )
         return float(np.nan_to_num(front - rear))
 
     reach = [contrast(walls.first, low, low + 30) for low in (30.0, 60.0, 90.0)]

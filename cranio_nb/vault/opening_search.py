@@ -8,6 +8,7 @@ side by side belong to the same one. Nothing has to be clicked.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,9 +18,12 @@ from scipy import ndimage
 from ..errors import InputRefused, NoOpening
 from ..opening import Opening
 from ..volume import Volume, inside_grid
-from .orientation import head_axes, head_centre
+from .head_frame import HeadFrame, find_head_frame
+from .orientation import head_centre
 from .ray_casting import FAR_MM, NEAR_MM
 from .ray_grid import RayGrid, filled_from_nearest
+from .thin_bone import LEAST_MM, Material
+from .verdict import Signs, Verdict, judge
 
 _STEP_DEG = 1.5  # degrees between rays: 2 mm on the vault
 _SEARCHED_DEG = 102.0  # from the vertex down to which the vault is searched; further down lie orbits and base
@@ -28,7 +32,7 @@ _BASE_DEG = 88.0  # an opening that lies wholly further down is an orbit, an ear
 _SIDE_DEG = 90.0  # the vault proper, over which its radius is averaged
 _SAMPLE_MM = 0.75  # along a ray
 _EDGE_MM = 3.0  # a ray that leaves the image so far before its neighbours meet bone is not followed to the end
-_THIN_RIM_MM, _THIN_HOLE_MM = 1.5, 30.0  # a small hole whose rim is as thin as paper was not cut
+_WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,13 +78,15 @@ class OutermostBone:
         return float(np.nanmedian(self.radius[self.within(_SIDE_DEG)]))
 
 
-def find_openings(bone: Volume, *, min_diameter_mm: float = 8.0) -> tuple[Opening, ...]:
+def find_openings(bone: Volume, *, ct: Volume | None = None, min_diameter_mm: float = 8.0) -> tuple[Opening, ...]:
     """Find every opening of the vault.
 
     Parameters
     ----------
     bone : Volume
-        Bool mask of the skull; planes rise to the top of the head.
+        Bool mask of the skull.
+    ct : Volume, optional
+        HU on the same grid: shows bone that is too thin for the threshold.
     min_diameter_mm : float
         Width of the smallest opening; sutures, vessels and pits of thin bone are narrower.
 
@@ -97,28 +103,114 @@ def find_openings(bone: Volume, *, min_diameter_mm: float = 8.0) -> tuple[Openin
         ``OpeningLeavesImage`` when an opening reaches the edge of the image, so that part of its rim is missing;
         ``NoVault`` when the mask holds no skull vault.
     """
-    outermost = measure_outermost_bone(bone)
-    groups = [rays for rays in open_rays(outermost, min_diameter_mm) if not _is_thin_bone(bone, outermost, rays)]
+    return tuple(one.opening for one in require_cut(survey_openings(bone, ct=ct, min_diameter_mm=min_diameter_mm)))
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedOpening:
+    """An opening with the verdict on it.
+
+    Parameters
+    ----------
+    opening : Opening
+    verdict : Verdict
+    whole : bool
+        Whether all of it lies inside the image.
+    """
+
+    opening: Opening
+    verdict: Verdict
+    whole: bool
+
+
+def survey_openings(
+    bone: Volume, *, ct: Volume | None = None, min_diameter_mm: float = 8.0
+) -> tuple[JudgedOpening, ...]:
+    """Find every opening, cut or natural, and judge it.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    ct : Volume, optional
+        HU on the same grid: shows bone below the threshold.
+    min_diameter_mm : float
+        Width of the smallest opening.
+
+    Returns
+    -------
+    tuple of JudgedOpening
+        Largest first.
+
+    Raises
+    ------
+    InputRefused
+        ``NoVault``.
+    """
+    frame = find_head_frame(bone)
+    outermost = measure_outermost_bone(bone, frame.trusted_axes)
+    groups = open_rays(outermost, min_diameter_mm)
     if not groups:
-        raise NoOpening("NoOpening", "The vault of this skull has no opening; there is nothing to close.")
+        return ()
     radius = _bridged_radius(outermost, groups)
-    return tuple(Opening(_sheet(bone, outermost.grid, rays, radius), outermost.grid.centre) for rays in groups)
+    material = Material.of(bone, ct, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
+    judged = []
+    for rays in groups:
+        signs = _signs(bone, outermost, rays, radius, material, min_diameter_mm, frame)
+        opening = Opening(_sheet(bone, outermost.grid, rays, radius), outermost.grid.centre)
+        judged.append(JudgedOpening(opening, judge(signs), bool(outermost.followed[rays].all())))
+    return tuple(judged)
 
 
-def measure_outermost_bone(bone: Volume) -> OutermostBone:
+def require_cut(found: Sequence[JudgedOpening]) -> tuple[JudgedOpening, ...]:
+    """The openings that are closed without being chosen: this decides whether a skull is intact.
+
+    Parameters
+    ----------
+    found : sequence of JudgedOpening
+
+    Returns
+    -------
+    tuple of JudgedOpening
+        At least one, in the same order.
+
+    Raises
+    ------
+    NoOpening
+        ``NoOpening`` when none was cut for sure; the message says what is doubtful.
+    InputRefused
+        ``OpeningLeavesImage``.
+    """
+    cut = tuple(one for one in found if one.verdict.designed)
+    if any(not one.whole for one in cut):
+        raise InputRefused(
+            "OpeningLeavesImage",
+            "The opening of the skull reaches the edge of the image, so part of its rim is missing.",
+            "Use a scan that covers the whole opening.",
+        )
+    if not cut:
+        doubtful = [one for one in found if one.verdict.doubtful]
+        reasons = "".join(f" Doubtful: {one.verdict.reason}" for one in doubtful)
+        raise NoOpening("NoOpening", f"The vault of this skull has no opening; there is nothing to close.{reasons}")
+    return cut
+
+
+def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> OutermostBone:
     """Measure the vault along rays about the vertex.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull.
+    axes : ndarray, shape (3, 3)
+        Rows: the head's left, back and up, orthonormal, world.
 
     Returns
     -------
     OutermostBone
     """
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / _STEP_DEG))
-    grid = RayGrid(head_centre(bone), head_axes(bone), np.radians(_STEP_DEG), 2 * half + 1)
+    grid = RayGrid(head_centre(bone, axes), axes, np.radians(_STEP_DEG), 2 * half + 1)
     directions = grid.directions
     start, step = bone.to_voxel(grid.centre), bone.steps(directions)
     radius, last_inside = np.full(directions.shape[:2], np.nan), np.zeros(directions.shape[:2])
@@ -142,11 +234,6 @@ def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[
     -------
     list of ndarray of bool, shape (n, n)
         Largest first.
-
-    Raises
-    ------
-    InputRefused
-        ``OpeningLeavesImage``.
     """
     # an opening has a core in which a disk of the smallest diameter fits; the core grows back to the rim
     reach = np.degrees(min_diameter_mm / 2 / outermost.typical_radius) / _STEP_DEG
@@ -159,12 +246,6 @@ def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[
     for rays in (labels == i for i in range(1, n_groups + 1)):
         if not (rays & core & on_vault).any():  # also a pocket beside the hole, without a core
             continue
-        if not outermost.followed[rays].all():
-            raise InputRefused(
-                "OpeningLeavesImage",
-                "The opening of the skull reaches the edge of the image, so part of its rim is missing.",
-                "Use a scan that covers the whole opening.",
-            )
         groups.append(rays)
     return sorted(groups, key=np.count_nonzero, reverse=True)
 
@@ -178,17 +259,39 @@ def _bridged_radius(outermost: OutermostBone, groups: list[NDArray[np.bool_]]) -
     return radius
 
 
-def _is_thin_bone(bone: Volume, outermost: OutermostBone, rays: NDArray[np.bool_]) -> bool:
-    """Whether a small opening is a spot where thin bone fell below the threshold, rather than a cut one."""
-    diameter = 2 * np.sqrt(rays.sum() / np.pi) * np.radians(_STEP_DEG) * outermost.typical_radius
-    if diameter > _THIN_HOLE_MM:
-        return False
+def _signs(
+    bone: Volume,
+    outermost: OutermostBone,
+    rays: NDArray[np.bool_],
+    radius: NDArray[np.float64],
+    material: Material,
+    least_mm: float,
+    frame: HeadFrame,
+) -> Signs:
+    """What an opening and its surroundings show."""
+    grid, step_mm = outermost.grid, np.radians(_STEP_DEG) * outermost.typical_radius
+    soft = np.zeros(rays.shape, bool)
+    soft[rays] = material.thickness(grid.centre, grid.directions[rays], radius[rays]) < LEAST_MM
+    soft = ndimage.median_filter(soft, 3) & rays
     rim = ndimage.binary_dilation(rays, iterations=2) & np.isfinite(outermost.radius)
-    depths = np.arange(-14.0, 1.5, 0.25)
-    lengths = (outermost.radius[rim][:, None] + depths)[..., None]
-    points = outermost.grid.centre + outermost.grid.directions[rim][:, None, :] * lengths
-    thickness = bone.at(points, outside=False).sum(axis=1) * 0.25
-    return bool(np.median(thickness) < _THIN_RIM_MM)
+    # what stands along the rays of the rim, from the outer surface inwards
+    depths = np.arange(-60.0, 1.5, 0.5)
+    points = grid.centre + grid.directions[rim][:, None, :] * (outermost.radius[rim][:, None] + depths)[..., None]
+    is_bone = bone.at(points, outside=False)
+    return Signs(
+        diameter_mm=2 * np.sqrt(rays.sum() / np.pi) * step_mm,
+        soft_mm=_widest(soft, _STEP_DEG) * outermost.typical_radius,
+        least_mm=least_mm,
+        on_vault=float(outermost.within(_BASE_DEG)[rays].mean()),
+        two_walls=float(is_bone[:, depths < -_WALL_MM].any(axis=1).mean()),
+        rim_mm=float(np.median(is_bone[:, depths >= -_WALL_MM].sum(axis=1) * 0.5)),
+        frame=frame.confidence,
+    )
+
+
+def _widest(rays: NDArray[np.bool_], step_deg: float) -> float:
+    """Diameter of the widest disk of rays, radians; a disk of one ray has none."""
+    return 2 * float(ndimage.distance_transform_edt(rays).max()) * np.radians(step_deg)
 
 
 def _sheet(bone: Volume, grid: RayGrid, rays: NDArray[np.bool_], radius: NDArray[np.float64]) -> Volume:
