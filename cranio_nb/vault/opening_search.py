@@ -22,16 +22,19 @@ from .head_frame import HeadFrame, find_head_frame
 from .orientation import head_centre
 from .ray_casting import FAR_MM, NEAR_MM
 from .ray_grid import RayGrid, filled_from_nearest
-from .thin_bone import LEAST_MM, Material
+from .thin_bone import Material
 from .verdict import Signs, Verdict, judge
 
 _STEP_DEG = 1.5  # degrees between rays: 2 mm on the vault
 _SEARCHED_DEG = 102.0  # from the vertex down to which the vault is searched; further down lie orbits and base
 _BESIDE_DEG = 10.0  # more, so that an opening can be followed over the border
 _BASE_DEG = 88.0  # an opening that lies wholly further down is an orbit, an ear canal, the base
+_BROW_DEG = 10.0  # by which the line between vault and base rises in front and falls behind
 _SIDE_DEG = 90.0  # the vault proper, over which its radius is averaged
+_SEEN = 0.75  # of the width of a small opening that is seen through, where rays cross a thick wall aslant
 _SAMPLE_MM = 0.75  # along a ray
 _EDGE_MM = 3.0  # a ray that leaves the image so far before its neighbours meet bone is not followed to the end
+_MIDDLE = 0.7  # of the distance from the rim to the innermost ray
 _WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
 
 
@@ -65,6 +68,18 @@ class OutermostBone:
         ndarray of bool, shape (n, n)
         """
         return self.grid.polar <= np.radians(degrees) + 1e-9
+
+    @property
+    def above_base(self) -> NDArray[np.bool_]:
+        """Rays above the line between vault and base, which rises to the brow in front and falls to the nape behind.
+
+        Returns
+        -------
+        ndarray of bool, shape (n, n)
+        """
+        v, _ = self.grid.offsets
+        front = -v / np.maximum(self.grid.polar, 1e-9)
+        return self.grid.polar <= np.radians(_BASE_DEG - _BROW_DEG * front) + 1e-9
 
     @property
     def typical_radius(self) -> float:
@@ -156,7 +171,7 @@ def survey_openings(
     material = Material.of(bone, ct, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
     judged = []
     for rays in groups:
-        signs = _signs(bone, outermost, rays, radius, material, min_diameter_mm, frame)
+        signs = _signs(bone, outermost, rays, radius, material, frame)
         opening = Opening(_sheet(bone, outermost.grid, rays, radius), outermost.grid.centre)
         judged.append(JudgedOpening(opening, judge(signs), bool(outermost.followed[rays].all())))
     return tuple(judged)
@@ -236,12 +251,12 @@ def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[
         Largest first.
     """
     # an opening has a core in which a disk of the smallest diameter fits; the core grows back to the rim
-    reach = np.degrees(min_diameter_mm / 2 / outermost.typical_radius) / _STEP_DEG
+    reach = _SEEN * np.degrees(min_diameter_mm / 2 / outermost.typical_radius) / _STEP_DEG
     free = np.isnan(outermost.radius) & outermost.within(_SEARCHED_DEG + _BESIDE_DEG)
     core = (ndimage.distance_transform_edt(free) > reach) & outermost.within(_SEARCHED_DEG)
     grown = ndimage.binary_dilation(core, _disk(reach + 1), mask=free)
     labels, n_groups = ndimage.label(grown, np.ones((3, 3)))
-    on_vault = outermost.within(_BASE_DEG)
+    on_vault = outermost.above_base
     groups = []
     for rays in (labels == i for i in range(1, n_groups + 1)):
         if not (rays & core & on_vault).any():  # also a pocket beside the hole, without a core
@@ -265,14 +280,14 @@ def _signs(
     rays: NDArray[np.bool_],
     radius: NDArray[np.float64],
     material: Material,
-    least_mm: float,
     frame: HeadFrame,
 ) -> Signs:
     """What an opening and its surroundings show."""
     grid, step_mm = outermost.grid, np.radians(_STEP_DEG) * outermost.typical_radius
-    soft = np.zeros(rays.shape, bool)
-    soft[rays] = material.thickness(grid.centre, grid.directions[rays], radius[rays]) < LEAST_MM
-    soft = ndimage.median_filter(soft, 3) & rays
+    # bone in the middle of the opening, away from the blurred rim
+    width = ndimage.distance_transform_edt(rays)
+    middle = width >= _MIDDLE * width.max()
+    across = material.thickness(grid.centre, grid.directions[middle], radius[middle])
     rim = ndimage.binary_dilation(rays, iterations=2) & np.isfinite(outermost.radius)
     # what stands along the rays of the rim, from the outer surface inwards
     depths = np.arange(-60.0, 1.5, 0.5)
@@ -280,18 +295,12 @@ def _signs(
     is_bone = bone.at(points, outside=False)
     return Signs(
         diameter_mm=2 * np.sqrt(rays.sum() / np.pi) * step_mm,
-        soft_mm=_widest(soft, _STEP_DEG) * outermost.typical_radius,
-        least_mm=least_mm,
-        on_vault=float(outermost.within(_BASE_DEG)[rays].mean()),
+        across_mm=float(np.median(across)),
+        on_vault=float(outermost.above_base[rays].mean()),
         two_walls=float(is_bone[:, depths < -_WALL_MM].any(axis=1).mean()),
         rim_mm=float(np.median(is_bone[:, depths >= -_WALL_MM].sum(axis=1) * 0.5)),
         frame=frame.confidence,
     )
-
-
-def _widest(rays: NDArray[np.bool_], step_deg: float) -> float:
-    """Diameter of the widest disk of rays, radians; a disk of one ray has none."""
-    return 2 * float(ndimage.distance_transform_edt(rays).max()) * np.radians(step_deg)
 
 
 def _sheet(bone: Volume, grid: RayGrid, rays: NDArray[np.bool_], radius: NDArray[np.float64]) -> Volume:

@@ -23,8 +23,6 @@ from ..volume import Volume
 
 Array = NDArray[np.float64]
 
-LEAST_MM = 0.35
-"""Thickness in mm from which bone lies across a ray."""
 _DEPTHS = np.arange(-12.0, 10.0, 0.75)  # mm about the expected outer surface
 _MARGIN_HU = 100.0  # above the medium up to which soft tissue and noise count for nothing
 _INSIDE_MM = np.array([5.0, 15.0, 25.0, 35.0])  # from the head's centre, where the medium is measured
