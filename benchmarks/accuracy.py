@@ -22,7 +22,7 @@ from scipy import ndimage
 import data_synth
 from cranio_nb.errors import CranioError
 from cranio_nb.evaluation import scores
-from cranio_nb.evaluation.against_truth import against, table3, true_prosthesis
+from cranio_nb.evaluation.against_truth import measure_against, table3, true_prosthesis
 from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES
 from cranio_nb.geometry import voxel_pieces
 from cranio_nb.methods import slicewise, thin_plate
@@ -51,9 +51,9 @@ def phantom(defect: str = "unilateral", seed: int = 1) -> None:
         bone = segment(Volume(case.hu, case.affine), threshold=threshold)
         openings = opening_search.find_openings(bone)
         print(f"\n-- HU >= {threshold:g}; Table 3 in voxels against the truth\n{HEADING}")
-        made = phantom_designs(bone, openings, true_prosthesis(truth, bone, openings[0]))
+        made = phantom_designs(bone, openings, true_prosthesis(truth, bone, openings[0].head_centre))
         print("   slicewise:paper against the reflection, as in the paper")
-        mirrored = true_prosthesis(mirror(case, bone), bone, openings[0])
+        mirrored = true_prosthesis(mirror(case, bone), bone, openings[0].head_centre)
         print_distances("", table3(made["slicewise:paper"], mirrored, bone))
         print_distances("printed in the paper", PAPER_DISTANCES)
         for name in ("slicewise", "slicewise:paper"):
@@ -65,7 +65,7 @@ def phantom_designs(bone: Volume, openings: tuple[Opening, ...], truth: Prosthes
     made = {}
     for one in contenders():
         design = made[one.name] = design_inside(bone, openings, one.method, one.preset, one.options)
-        seen = against(design, truth, bone)
+        seen = measure_against(design, truth, bone)
         print_distances(one.name, seen.table3, f"   {seen.score.dice:.3f}  {seen.score.hd95:5.2f}")
     return made
 

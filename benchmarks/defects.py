@@ -22,7 +22,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from cranio_nb.drawing.figures import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
+from cranio_nb.drawing.palette import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 from cranio_nb.pipeline.compare import MEASURES
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import Volume

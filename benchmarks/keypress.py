@@ -23,15 +23,14 @@ from playwright.sync_api import Locator, sync_playwright
 CELLS = (
     """
 import ipywidgets, matplotlib.pyplot as plt
+import cranio_nb as cn
 from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import widgets
-from cranio_nb.vault.opening_search import find_openings
-from cranio_nb.volume import Volume
 from data_synth import phantom_case
 case = phantom_case("{size}")
-ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
-one, px = find_openings(bone)[0], float(bone.spacing[1])
-plane = sum(one.planes) // 2
+ct, bone = cn.Volume(case.hu, case.affine), cn.Volume(case.bone, case.affine)
+opening, px = cn.find_openings(bone)[0], float(bone.spacing[1])
+plane = sum(opening.planes) // 2
 """,
     """
 def draw(plane):
@@ -41,11 +40,11 @@ ipywidgets.VBox([slider, ipywidgets.interactive_output(draw, {{"plane": slider}}
 """,
     "widgets.ct_viewer(ct)",
     "widgets.threshold(ct)",
-    "widgets.features(bone, plane, opening=one.sheet)",
+    "widgets.features(bone, plane, opening=opening.sheet)",
     """
 seen = feature_extraction.extract_features(bone.voxels[plane])
-ends, _ = feature_extraction.find_gap_ends(seen, one.sheet.voxels[plane], skip_px=4.5 / px)
-widgets.balloon(ends, bone.to_voxel(one.head_centre)[1:], background=bone.voxels[plane], px=px)
+ends, _ = feature_extraction.find_gap_ends(seen, opening.sheet.voxels[plane], skip_px=4.5 / px)
+widgets.balloon(ends, bone.to_voxel(opening.head_centre)[1:], background=bone.voxels[plane], px=px)
 """,
 )
 SLIDERS = (

@@ -17,13 +17,11 @@ import numpy as np
 
 os.environ["CRANIO_NB_MODE"] = "widget"
 
+import cranio_nb as cn
 from cranio_nb.drawing import figures
-from cranio_nb.methods import slicewise
-from cranio_nb.pipeline import run
+from cranio_nb.evaluation import against_truth
 from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import widgets
-from cranio_nb.vault import opening_search
-from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
 
@@ -54,7 +52,7 @@ def time_calls(call: Callable[[int], object], repeats: int) -> np.ndarray:
     return np.array(took)
 
 
-def new_figure(ct: Volume) -> Callable[[int], bytes]:
+def new_figure(ct: cn.Volume) -> Callable[[int], bytes]:
     """A slice through a new figure each time."""
 
     def draw(i: int) -> bytes:
@@ -65,7 +63,7 @@ def new_figure(ct: Volume) -> Callable[[int], bytes]:
     return draw
 
 
-def same_figure(ct: Volume) -> Callable[[int], bytes]:
+def same_figure(ct: cn.Volume) -> Callable[[int], bytes]:
     """A slice through one figure with new data."""
     figure, ax = figures.new_figure(512 / figures.DPI, 512 / figures.DPI)
     image = ax.imshow(ct.voxels[0], cmap="gray", vmin=-450, vmax=1050)
@@ -80,36 +78,36 @@ def same_figure(ct: Volume) -> Callable[[int], bytes]:
 def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     """Name and times of each update."""
     case = phantom_case(size)
-    ct, bone = Volume(case.hu, case.affine), Volume(case.bone, case.affine)
-    openings = opening_search.find_openings(bone)
-    one, px = openings[0], float(bone.spacing[1])
-    plane = sum(one.planes) // 2
+    ct, bone = cn.Volume(case.hu, case.affine), cn.Volume(case.bone, case.affine)
+    openings = cn.find_openings(bone)
+    opening, px = openings[0], float(bone.spacing[1])
+    plane = sum(opening.planes) // 2
     near = list(range(plane - 4, plane + 5))
     yield "new matplotlib figure: slice", time_calls(new_figure(ct), repeats)
     yield "same matplotlib figure, new data: slice", time_calls(same_figure(ct), repeats)
     viewer, bony = widgets.ct_viewer(ct), widgets.threshold(ct)
     yield "ct_viewer: slice", measure(viewer, "plane", near, repeats)
     yield "ct_viewer: window width", measure(viewer, "width", [400, 1500, 2500], repeats)
-    yield "threshold: HU", measure(bony, "hu", [200, 300, 400, 500, 600], repeats)
+    yield "threshold: HU", measure(bony, "threshold_hu", [200, 300, 400, 500, 600], repeats)
     yield "threshold: slice", measure(bony, "plane", near, repeats)
-    seen = widgets.features(bone, plane, opening=one.sheet)
-    yield "features: skip", measure(seen, "skip", [1.0, 2.5, 4.0, 5.5], repeats)
-    yield "features: reach", measure(seen, "reach", [6.0, 9.0, 12.0, 15.0], repeats)
+    ends_panel = widgets.features(bone, plane, opening=opening.sheet)
+    yield "features: skip", measure(ends_panel, "skip_mm", [1.0, 2.5, 4.0, 5.5], repeats)
+    yield "features: reach", measure(ends_panel, "reach_mm", [6.0, 9.0, 12.0, 15.0], repeats)
     yield "features: slice, all new", measure(widgets.features(bone, plane), "plane", list(range(20, 60)), repeats)
     ends, _ = feature_extraction.find_gap_ends(
-        feature_extraction.extract_features(bone.voxels[plane]), one.sheet.voxels[plane], skip_px=4.5 / px
+        feature_extraction.extract_features(bone.voxels[plane]), opening.sheet.voxels[plane], skip_px=4.5 / px
     )
-    inside = bone.to_voxel(one.head_centre)[1:]
+    inside = bone.to_voxel(opening.head_centre)[1:]
     ball = widgets.balloon(ends, inside, background=bone.voxels[plane], px=px)
     fresh = np.round(np.linspace(0.0, 0.39, repeats), 3).tolist()
     yield "balloon: k, all new", measure(ball, "pressure", fresh, repeats)
     yield "balloon: N", measure(ball, "n", [11, 21, 31, 41], repeats)
     yield "balloon: step (the player)", measure(ball, "step", list(range(5, 60)), repeats)
-    yield "patch: slice", measure(widgets.patch(bone, one), "plane", near, repeats)
-    made = slicewise.design(bone, openings, axial=True)
-    true = run.check_truth(made, bone.with_voxels(case.implant), bone, one).prosthesis
-    shown = widgets.evaluation(made, true)
-    yield "evaluation: scale", measure(shown, "top", [0.5, 1.0, 2.0], repeats)
+    yield "patch: slice", measure(widgets.patch(bone, opening), "plane", near, repeats)
+    made = cn.design(bone, openings, axial=True)
+    true = against_truth.true_prosthesis(bone.with_voxels(case.implant), bone, opening)
+    shown = widgets.distances(made, true)
+    yield "evaluation: scale", measure(shown, "top_mm", [0.5, 1.0, 2.0], repeats)
 
 
 def main() -> None:

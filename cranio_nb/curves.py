@@ -50,7 +50,18 @@ class ChordFrame:
 
     @classmethod
     def of(cls, ends: GapEnds, inside: ArrayLike) -> ChordFrame:
-        """Frame of a gap; `inside` is any (row, col) on the head's inner side of the chord."""
+        """Frame of a gap.
+
+        Parameters
+        ----------
+        ends : GapEnds
+        inside : array_like, shape (2,)
+            Any slice (row, col) on the head's inner side of the chord.
+
+        Returns
+        -------
+        ChordFrame
+        """
         chord = ends.points[1] - ends.points[0]
         length = float(np.hypot(*chord))
         along = chord / length
@@ -60,15 +71,47 @@ class ChordFrame:
         return cls(ends.points[0], np.array([along, out]), length)
 
     def to_chord(self, points: ArrayLike) -> Points:
-        """Slice (row, col) -> chord (along, out), shape (..., 2)."""
+        """Chord coordinates of points of the slice.
+
+        Parameters
+        ----------
+        points : array_like, shape (..., 2)
+            Slice (row, col), px.
+
+        Returns
+        -------
+        ndarray, shape (..., 2)
+            Chord (along, out), px.
+        """
         return (np.asarray(points, float) - self.origin) @ self.axes.T
 
     def to_slice(self, points: ArrayLike) -> Points:
-        """Chord (along, out) -> slice (row, col), shape (..., 2)."""
+        """Points of the slice by their chord coordinates.
+
+        Parameters
+        ----------
+        points : array_like, shape (..., 2)
+            Chord (along, out), px.
+
+        Returns
+        -------
+        ndarray, shape (..., 2)
+            Slice (row, col), px.
+        """
         return np.asarray(points, float) @ self.axes + self.origin
 
     def end_angles(self, ends: GapEnds) -> tuple[float, float]:
-        """Angles theta0 (about 0) and theta1 (about pi) of the end tangents above the chord, radians."""
+        """Angles of the end tangents above the chord.
+
+        Parameters
+        ----------
+        ends : GapEnds
+
+        Returns
+        -------
+        tuple of float
+            theta0, about 0, and theta1, about pi; radians.
+        """
         along, out = self.axes
         theta0, theta1 = np.arctan2(ends.tangents @ out, ends.tangents @ along)
         return float(theta0), float(theta1 % (2 * np.pi))
@@ -95,19 +138,68 @@ class Balloon:
 
 
 def arc_length(points: Points) -> NDArray[np.float64]:
-    """Length along a polyline up to each of its points, shape (n,), starting at 0."""
+    """Length along a polyline up to each of its points.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 2)
+        px or mm.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        In the unit of the points, starting at 0.
+
+    Examples
+    --------
+    >>> arc_length(np.array([[0.0, 0.0], [3.0, 4.0], [3.0, 5.0]]))
+    array([0., 5., 6.])
+    """
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
 
 
 def resample(points: Points, n: int) -> Points:
-    """`n` points equally spaced along a polyline, ends kept, shape (n, 2)."""
+    """Points equally spaced along a polyline.
+
+    Parameters
+    ----------
+    points : ndarray, shape (m, 2)
+    n : int
+        Number wanted.
+
+    Returns
+    -------
+    ndarray, shape (n, 2)
+        Ends kept.
+
+    Examples
+    --------
+    >>> resample(np.array([[0.0, 0.0], [0.0, 1.0], [0.0, 4.0]]), 3)
+    array([[0., 0.], [0., 2.], [0., 4.]])
+    """
     at = arc_length(points)
     even = np.linspace(0, at[-1], n)
     return np.stack([np.interp(even, at, axis) for axis in points.T], axis=1)
 
 
 def normals(curves: Points) -> Points:
-    """Unit normals of curves that run along +x with `out` = +y, shape (..., n, 2); at the ends one-sided."""
+    """Unit normals of curves.
+
+    Parameters
+    ----------
+    curves : ndarray, shape (..., n, 2)
+        Running along +x, with `out` = +y.
+
+    Returns
+    -------
+    ndarray, shape (..., n, 2)
+        At the ends one-sided.
+
+    Examples
+    --------
+    >>> normals(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]))[1].tolist()
+    [-0.0, 1.0]
+    """
     step = np.gradient(curves, axis=-2)
     normal = np.stack([-step[..., 1], step[..., 0]], axis=-1)
     return normal / np.maximum(np.linalg.norm(normal, axis=-1, keepdims=True), 1e-12)
@@ -129,6 +221,11 @@ def cubic(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> Po
     -------
     ndarray, shape (..., n, 2)
         Chord (along, out): zero height at both ends, slopes tan(theta0) and tan(theta1).
+
+    Examples
+    --------
+    >>> cubic(8.0, np.pi / 4, 3 * np.pi / 4, 3).round(9) + 0.0
+    array([[0., 0.], [4., 2.], [8., 0.]])
     """
     length, t0, t1 = np.broadcast_arrays(np.asarray(length, float), np.tan(theta0), np.tan(theta1))
     s = np.linspace(0, 1, n)
@@ -157,6 +254,7 @@ def spiral(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> t
     With heading a(t) = a0 + (a1 - a0 - A) t + A t^2 the curve returns to the chord when the integral of sin a(t)
     vanishes; A follows by Newton's method from A = 3 (a0 + a1) (Bertolazzi and Frego 2015, G1 fitting with clothoids).
     """
+    # Newton's method for the bend A that brings the curve back to the chord
     length = np.asarray(length, float)[..., None]
     a0 = np.asarray(theta0, float)[..., None]
     a1 = np.asarray(theta1, float)[..., None] - np.pi
@@ -168,6 +266,7 @@ def spiral(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> t
         miss = (w * np.sin(heading)).sum(-1, keepdims=True)
         slope = (w * np.cos(heading) * (t**2 - t)).sum(-1, keepdims=True)
         bend = bend - miss / slope
+    # the length of the curve, and its points by integration of the heading from one to the next
     total = length / (w * np.cos(a0 + (a1 - a0 - bend) * t + bend * t**2)).sum(-1, keepdims=True)
     s = np.linspace(0, 1, n)
     steps = s[:-1, None] + t * (s[1] - s[0])
@@ -201,15 +300,32 @@ class SliceFeatures:
 
     @property
     def in_hull(self) -> NDArray[np.bool_]:
-        """Which boundary pixels lie in the hull, shape (M,)."""
+        """Which boundary pixels lie in the hull.
+
+        Returns
+        -------
+        ndarray of bool, shape (M,)
+        """
         return np.all(self.boundary @ self.hull[:, :2].T + self.hull[:, 2] <= 1e-9, axis=1)
 
     @property
     def outer(self) -> Points:
-        """Outer boundary B - S, shape (m, 2)."""
+        """Outer boundary B - S.
+
+        Returns
+        -------
+        ndarray, shape (m, 2)
+            Slice (row, col), px.
+        """
         return self.boundary[~self.in_hull]
 
     @property
     def inner(self) -> Points:
-        """Inner boundary: B and S, shape (m, 2)."""
+        """Inner boundary: B and S.
+
+        Returns
+        -------
+        ndarray, shape (m, 2)
+            Slice (row, col), px.
+        """
         return self.boundary[self.in_hull]

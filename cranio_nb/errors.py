@@ -1,8 +1,8 @@
 """What went wrong, in one sentence, with what to do about it.
 
 Every error of the package is a `CranioError`. It carries a stable `code`, a plain sentence and a remedy, never
-patient text and never a full path. The subclass says which door was closed, and fixes the exit code of the
-command line.
+patient text and never a full path. The subclass says what failed, reading, finding or writing, and fixes
+the exit code of the command line.
 """
 
 
@@ -17,6 +17,12 @@ class CranioError(ValueError):
         One sentence: what was found and what was wanted.
     remedy : str
         What to try next; may be empty.
+
+    Examples
+    --------
+    >>> raise CranioError("NoHead", "The folder holds no head.", "Give another folder.")
+    Traceback (most recent call last):
+    cranio_nb.errors.CranioError: The folder holds no head. Give another folder.
     """
 
     exit_code = 3

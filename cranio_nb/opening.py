@@ -1,4 +1,4 @@
-"""An opening in the skull: where bone is wanted, and from where it is seen.
+"""An opening in the skull: where bone is wanted, and the point inside the head that rays to it start from.
 
 Frames: the sheet in voxel (plane, row, col); points and directions in the world (mm, LPS).
 """
@@ -23,7 +23,15 @@ class Opening:
         Bool (P, R, C) mask on the bone's grid: a coarse sheet across the hole, where bone is wanted.
         It shows where the hole is and how far it reaches, not the shape of the missing bone.
     head_centre : ndarray, shape (3,)
-        World mm of a point inside the cranial cavity, from which the vault is seen.
+        World mm of a point inside the cranial cavity: where rays to the vault start.
+
+    Examples
+    --------
+    >>> sheet = np.zeros((4, 4, 4), bool)
+    >>> sheet[1:3, 1, 1] = True
+    >>> opening = Opening(Volume(sheet, np.eye(4)), np.array([1.5, 1.0, -9.0]))
+    >>> opening.planes, opening.centre, opening.direction
+    ((1, 3), array([1.5, 1. , 1. ]), array([0., 0., 1.]))
     """
 
     sheet: Volume
@@ -31,17 +39,35 @@ class Opening:
 
     @property
     def planes(self) -> tuple[int, int]:
-        """First plane and one past the last plane the opening spans."""
+        """The planes that the opening spans.
+
+        Returns
+        -------
+        tuple of int
+            First plane and one past the last.
+        """
         hit = np.flatnonzero(self.sheet.voxels.any(axis=(1, 2)))
         return int(hit[0]), int(hit[-1]) + 1
 
     @property
     def centre(self) -> NDArray[np.float64]:
-        """Centre of the opening, shape (3,), world mm."""
+        """Centre of the opening.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            World mm.
+        """
         return self.sheet.to_world(np.argwhere(self.sheet.voxels).mean(axis=0))
 
     @property
     def direction(self) -> NDArray[np.float64]:
-        """Unit vector from the head's centre to the opening, shape (3,), LPS."""
+        """Way from the head's centre to the opening.
+
+        Returns
+        -------
+        ndarray, shape (3,)
+            Unit vector, world.
+        """
         towards = self.centre - self.head_centre
         return towards / np.linalg.norm(towards)

@@ -38,6 +38,13 @@ class Prosthesis:
         What happened: for slice methods a list ``slices`` of per-slice values, findings, timings. JSON-able.
     working : tuple
         The method's own intermediate results, one per opening, for pictures and lessons.
+
+    Examples
+    --------
+    >>> triangle = Mesh(np.eye(3), np.array([[0, 1, 2]]))
+    >>> made = Prosthesis(triangle, np.array([OUTER], np.uint8), None, "none")
+    >>> len(made.surface(OUTER).faces), len(made.surface(INNER).faces)
+    (1, 0)
     """
 
     mesh: Mesh
@@ -49,7 +56,18 @@ class Prosthesis:
     working: tuple[Any, ...] = ()
 
     def surface(self, side: int) -> Mesh:
-        """The faces of one side as an open mesh (`OUTER`, `INNER` or `RIM`), with only the vertices it uses."""
+        """The faces of one side as an open mesh.
+
+        Parameters
+        ----------
+        side : int
+            `OUTER`, `INNER` or `RIM`.
+
+        Returns
+        -------
+        Mesh
+            With only the vertices it uses.
+        """
         faces = self.mesh.faces[self.sides == side]
         used, compact = np.unique(faces, return_inverse=True)
         return Mesh(self.mesh.vertices[used], compact.reshape(-1, 3))

@@ -13,13 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .errors import InputRefused
-
-Affine = NDArray[np.float64]
-Box = tuple[slice, slice, slice]
-"""Part of a grid: a range of planes, of rows and of columns, with steps of 1."""
-
-# Axis order of the package: planes rise to the top of the head (z), rows to the back (y), columns to the left (x).
-_WORLD_AXIS = (2, 1, 0)
+from .grid import Affine, AxisOrder, Box, box_around, canonical_order, move_affine, nearest_values
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,20 +200,6 @@ class Volume:
         """
         return nearest_values(self.voxels, index, outside=outside)
 
-    def contains(self, points: ArrayLike) -> NDArray[np.bool_]:
-        """Whether world points lie in a voxel of the grid.
-
-        Parameters
-        ----------
-        points : array_like, shape (..., 3)
-            World mm.
-
-        Returns
-        -------
-        ndarray of bool, shape (...)
-        """
-        return inside_grid(self.to_voxel(points), self.shape)
-
     def box(self, margin: ArrayLike = 0) -> Box:
         """Smallest box that holds all true voxels, grown by a margin and clipped to the grid.
 
@@ -243,53 +223,7 @@ class Volume:
         hits = [np.flatnonzero(self.voxels.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
         if not len(hits[0]):
             return slice(0, 0), slice(0, 0), slice(0, 0)
-        return self.box_around(np.array([(hit[0], hit[-1]) for hit in hits]).T, margin)
-
-    def box_around(self, index: ArrayLike, margin: ArrayLike = 0) -> Box:
-        """Smallest box that holds fractional indices, grown by a margin and clipped to the grid.
-
-        Parameters
-        ----------
-        index : array_like, shape (n, 3)
-            Voxel (plane, row, col); n > 0.
-        margin : int or array_like of int, shape (3,)
-            Voxels on each side.
-
-        Returns
-        -------
-        tuple of slice
-            Of at least one voxel along each axis.
-        """
-        index, margin, last = np.asarray(index), np.asarray(margin), np.array(self.shape) - 1
-        low = np.clip(np.floor(index.min(axis=0)).astype(int) - margin, 0, last)
-        high = np.clip(np.ceil(index.max(axis=0)).astype(int) + margin, low, last) + 1
-        planes, rows, cols = (slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
-        return planes, rows, cols
-
-    def affine_from(self, start: ArrayLike, step: ArrayLike = 1) -> Affine:
-        """Affine of another grid along the same axes.
-
-        Parameters
-        ----------
-        start : array_like, shape (3,)
-            Fractional index, on this grid, of the other grid's first voxel.
-        step : float or array_like, shape (3,)
-            Voxels of this grid from each voxel of the other to its next.
-
-        Returns
-        -------
-        ndarray, shape (4, 4)
-            Voxel index of the other grid -> world mm.
-
-        Examples
-        --------
-        >>> Volume(np.zeros((4, 4, 4)), np.eye(4)).affine_from((0.5, 0.5, 0.5), 2)[0]
-        array([2. , 0. , 0. , 0.5])
-        """
-        affine = self.affine.copy()
-        affine[:3, 3] = self.to_world(start)
-        affine[:3, :3] *= step
-        return affine
+        return box_around([[hit[0] for hit in hits], [hit[-1] for hit in hits]], self.shape, margin)
 
     def with_voxels(self, voxels: NDArray) -> Self:
         """Other voxels on the same grid.
@@ -331,7 +265,7 @@ class Volume:
         array([1., 0., 2.])
         """
         start = [range(n)[s].start for n, s in zip(self.shape, box, strict=True)]
-        return replace(self, voxels=self.voxels[box], affine=self.affine_from(start))
+        return replace(self, voxels=self.voxels[box], affine=move_affine(self.affine, start))
 
     def canonical(self) -> Self:
         """The same voxels with planes rising to the head's top, rows to the back and columns to the left.
@@ -364,104 +298,6 @@ class Volume:
         return replace(self, voxels=voxels, affine=affine)
 
 
-@dataclass(frozen=True)
-class AxisOrder:
-    """New axis i is old axis `axes[i]`, reversed where `flips[i]`.
-
-    Parameters
-    ----------
-    axes : tuple of int
-        A permutation of 0, 1, 2.
-    flips : tuple of bool
-    """
-
-    axes: tuple[int, int, int]
-    flips: tuple[bool, bool, bool]
-
-    @property
-    def inverse(self) -> AxisOrder:
-        """The order that undoes this one.
-
-        Returns
-        -------
-        AxisOrder
-        """
-        back = tuple(int(i) for i in np.argsort(self.axes))
-        return AxisOrder((back[0], back[1], back[2]), (self.flips[back[0]], self.flips[back[1]], self.flips[back[2]]))
-
-
-def canonical_order(affine: Affine) -> AxisOrder:
-    """The axis order that turns a grid into the package's own (planes up, rows back, columns left).
-
-    Parameters
-    ----------
-    affine : ndarray, shape (4, 4)
-        Array index -> world mm (LPS) of the grid as stored.
-
-    Returns
-    -------
-    AxisOrder
-
-    Examples
-    --------
-    >>> canonical_order(np.diag([-0.5, 0.5, 3.0, 1.0]))  # columns to the right, rows back, planes up
-    AxisOrder(axes=(2, 1, 0), flips=(False, False, True))
-    """
-    directions = affine[:3, :3] / np.linalg.norm(affine[:3, :3], axis=0)
-    best = max(
-        ((a, b, c) for a in range(3) for b in range(3) for c in range(3) if {a, b, c} == {0, 1, 2}),
-        key=lambda axes: sum(abs(directions[w, a]) for w, a in zip(_WORLD_AXIS, axes, strict=True)),
-    )
-    flips = [bool(directions[w, a] < 0) for w, a in zip(_WORLD_AXIS, best, strict=True)]
-    return AxisOrder(best, (flips[0], flips[1], flips[2]))
-
-
-def inside_grid(index: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Whether fractional indices round to an element of an array.
-
-    Parameters
-    ----------
-    index : array_like, shape (..., k)
-    shape : tuple of int
-        k numbers.
-
-    Returns
-    -------
-    ndarray of bool, shape (...)
-
-    Examples
-    --------
-    >>> inside_grid([[0.4, 2.4], [0.4, 2.6]], (1, 3))
-    array([ True, False])
-    """
-    nearest = np.rint(np.moveaxis(np.asarray(index, float), -1, 0))
-    return np.logical_and.reduce([(i >= 0) & (i < n) for i, n in zip(nearest, shape, strict=True)])
-
-
-def nearest_values(values: NDArray, index: ArrayLike, *, outside: float) -> NDArray:
-    """Values of the array elements nearest to fractional indices; a half goes to the even element.
-
-    Parameters
-    ----------
-    values : ndarray of k dimensions
-    index : array_like, shape (..., k)
-    outside : scalar
-        Value where the array has no element.
-
-    Returns
-    -------
-    ndarray, shape (...)
-
-    Examples
-    --------
-    >>> nearest_values(np.array([3, 4, 5]), [[0.6], [7.0]], outside=0)
-    array([4, 0])
-    """
-    inside = inside_grid(index, values.shape)
-    nearest = (np.rint(i) for i in np.moveaxis(np.asarray(index, float), -1, 0))
-    return np.where(inside, values[tuple(np.where(inside, i, 0).astype(np.intp) for i in nearest)], outside)
-
-
 def same_grid(a: Volume, b: Volume, tol: float = 0.05) -> bool:
     """Whether two volumes share shape and place.
 
@@ -474,6 +310,12 @@ def same_grid(a: Volume, b: Volume, tol: float = 0.05) -> bool:
     Returns
     -------
     bool
+
+    Examples
+    --------
+    >>> volume = Volume(np.zeros((2, 2, 2)), np.eye(4))
+    >>> same_grid(volume, volume.with_voxels(volume.voxels > 0)), same_grid(volume, volume.crop(np.s_[1:, :, :]))
+    (True, False)
     """
     if a.shape != b.shape:
         return False

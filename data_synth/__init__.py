@@ -1,4 +1,4 @@
-"""The independent witness: synthetic heads and virtual craniectomies with known truth.
+"""Synthetic heads and virtual craniectomies with known truth.
 
 It shares no code with the package it tests. `python -m data_synth --help` writes cases to disk.
 """

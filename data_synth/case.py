@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .head import HeadShape
-from .truth import SliceTruth
+from .truth import SliceTruth, gaps_in_slice
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,5 +60,16 @@ class Case:
         return float(abs(np.linalg.det(self.affine[:3, :3])))
 
     def slice_truth(self, plane: float) -> tuple[SliceTruth, ...]:
-        """Closed-form gaps in one plane; empty for a cut case, which has no closed form."""
-        return () if self.head is None else self.head.slice_truth(self.affine, plane)
+        """The gaps that the defects leave in one plane, in closed form.
+
+        Parameters
+        ----------
+        plane : float
+            Plane index.
+
+        Returns
+        -------
+        tuple of SliceTruth
+            One per defect that takes bone there; empty for a cut case, which has no closed form.
+        """
+        return () if self.head is None else gaps_in_slice(self.head, self.affine, plane)

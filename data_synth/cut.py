@@ -93,7 +93,7 @@ def cut_case(
 
 @dataclass(frozen=True, eq=False)
 class _Vault:
-    """The skull, and a centre about 80 mm under its top (world mm) from which its vault is seen."""
+    """The skull, and a centre about 80 mm under its top (world mm) from which rays reach its vault."""
 
     bone: Mask
     affine: Array
@@ -167,7 +167,7 @@ class _Vault:
 
 
 def _find_vault(bone: Mask, affine: Array) -> _Vault:
-    """Look for the middle of the vault's outline 20 to 60 mm under the vertex, and go 80 mm under it."""
+    """Find the middle of the vault's outline 20 to 60 mm under the vertex, and go 80 mm under it."""
     points = np.argwhere(bone)[::7] @ affine[:3, :3].T + affine[:3, 3]
     top = np.quantile(points[:, 2], 0.9995)
     band = points[(points[:, 2] < top - 20) & (points[:, 2] > top - 60), :2]

@@ -117,7 +117,12 @@ class Cutter:
         offsets : array_like, shape (..., 3)
             Points minus the head's centre.
         inner, outer : array_like, shape (...)
-            Radii of the skull's surfaces along the same rays.
+            Radii of the skull's surfaces along the same rays, mm.
+
+        Returns
+        -------
+        ndarray, shape (...)
+            mm.
         """
         p = np.asarray(offsets, float)
         length = np.linalg.norm(p, axis=-1)
@@ -129,7 +134,18 @@ class Cutter:
         return side if self.depth >= 1 else np.minimum(side, floor)
 
     def rim_normal(self, offsets: ArrayLike) -> Array:
-        """Unit vectors along which the distance to the cone's side changes fastest, shape (..., 3)."""
+        """Directions in which the distance to the cone's side changes fastest.
+
+        Parameters
+        ----------
+        offsets : array_like, shape (..., 3)
+            Points minus the head's centre, mm.
+
+        Returns
+        -------
+        ndarray, shape (..., 3)
+            Unit vectors.
+        """
         p = np.asarray(offsets, float)
         d = p / np.linalg.norm(p, axis=-1, keepdims=True)
         away = d * (d @ self.axes[2])[..., None] - self.axes[2]
@@ -165,6 +181,11 @@ def plan_cutters(
         Distance in mm from the head's centre to the outer skull along a unit direction, shape (3,).
     diameter : float, optional
         Mean diameter in mm of every hole, instead of one drawn from the defect's range.
+
+    Returns
+    -------
+    tuple of Cutter
+        One per hole.
 
     Raises
     ------

@@ -7,15 +7,11 @@ r(d) about `HeadShape.centre`, so a point p is inside one exactly when |p - cent
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .truth import SliceTruth, gaps_in_slice
-
-if TYPE_CHECKING:
-    from .defect import Cutter
+from .defect import Cutter
 
 Array = NDArray[np.float64]
 
@@ -57,34 +53,61 @@ class HeadShape:
     cutters: tuple[Cutter, ...] = ()
 
     def outer_radius(self, directions: ArrayLike) -> Array:
-        """Distance of the outer skull surface from the centre in mm, along unit directions of shape (..., 3)."""
+        """Distance of the outer skull surface from the centre along rays.
+
+        Parameters
+        ----------
+        directions : array_like, shape (..., 3)
+            Unit vectors.
+
+        Returns
+        -------
+        ndarray, shape (...)
+            mm.
+        """
         x = np.asarray(directions, float)
         return (1 + polynomial(self.shape, SHAPE_TERMS, x)) / self.norm(x)
 
     def inner_radius(self, directions: ArrayLike) -> Array:
-        """Distance of the inner skull surface from the centre in mm, along unit directions of shape (..., 3)."""
+        """Distance of the inner skull surface from the centre along rays; all else as for `outer_radius`."""
         return self.outer_radius(directions) - self.bone_thickness(directions)
 
     def skin_radius(self, directions: ArrayLike) -> Array:
-        """Distance of the scalp from the centre in mm, along unit directions of shape (..., 3)."""
+        """Distance of the scalp from the centre along rays; all else as for `outer_radius`."""
         return self.outer_radius(directions) + self.scalp
 
     def bone_thickness(self, directions: ArrayLike) -> Array:
-        """Thickness of the skull in mm, along unit directions of shape (..., 3)."""
+        """Thickness of the skull along rays from the centre; all else as for `outer_radius`."""
         return polynomial(self.thickness, THICKNESS_TERMS, np.asarray(directions, float))
 
     def norm(self, offsets: ArrayLike) -> Array:
-        """Superellipsoid norm of offsets from the centre, shape (..., 3): 1 on the smooth body of the head."""
+        """Superellipsoid norm of offsets from the centre.
+
+        Parameters
+        ----------
+        offsets : array_like, shape (..., 3)
+            Points minus the centre, mm.
+
+        Returns
+        -------
+        ndarray, shape (...)
+            1 on the smooth body of the head, less inside.
+        """
         x = np.asarray(offsets, float)
         return np.power(_powers(x / self._axes_of(x)) @ np.ones(3), 1 / _EXPONENT)
 
     def gradients(self, offsets: ArrayLike) -> tuple[Array, Array]:
-        """Gradients of |p| - r(p / |p|) for the outer and the inner surface, each shape (..., 3).
+        """Gradients of |p| - r(p / |p|) for the outer and the inner surface.
 
         Parameters
         ----------
         offsets : array_like, shape (..., 3)
             Points minus the centre, mm; not zero.
+
+        Returns
+        -------
+        outer, inner : ndarray, shape (..., 3)
+            On a surface they are its normals, outward, not of unit length.
         """
         p = np.asarray(offsets, float)
         length = lengths(p)[..., None]
@@ -93,32 +116,41 @@ class HeadShape:
         return d - _across(outer, d) / length, d - _across(outer - thickness, d) / length
 
     def foramen_distance(self, offsets: ArrayLike) -> Array:
-        """Signed distance in mm from the foramen's cone, shape (...): positive inside it."""
+        """Signed distance from the cone of the foramen.
+
+        Parameters
+        ----------
+        offsets : array_like, shape (..., 3)
+            Points minus the centre, mm.
+
+        Returns
+        -------
+        ndarray, shape (...)
+            mm, positive inside the cone.
+        """
         p = np.asarray(offsets, float)
         length = lengths(p)
         cosine = p @ _FORAMEN / np.maximum(length, 1e-9)
         return (self.foramen - np.arccos(np.clip(cosine, -1, 1))) * length if self.foramen else -length - 1.0
 
     def inside_bone(self, offsets: ArrayLike) -> NDArray[np.bool_]:
-        """Whether offsets from the centre (..., 3), not zero, lie in the complete skull."""
+        """Whether points lie in the complete skull, without its defects.
+
+        Parameters
+        ----------
+        offsets : array_like, shape (..., 3)
+            Points minus the centre, mm; not zero.
+
+        Returns
+        -------
+        ndarray of bool, shape (...)
+        """
         p = np.asarray(offsets, float)
         length = lengths(p)
         d = p / length[..., None]
         outer = self.outer_radius(d)
         shell = (length < outer) & (length >= outer - self.bone_thickness(d))
         return shell & (self.foramen_distance(p) <= 0)
-
-    def slice_truth(self, affine: Array, plane: float) -> tuple[SliceTruth, ...]:
-        """Every gap the defects leave in one plane of a scan; see `SliceTruth`.
-
-        Parameters
-        ----------
-        affine : ndarray, shape (4, 4)
-            Voxel (plane, row, col) -> world mm of the scan.
-        plane : float
-            Plane index.
-        """
-        return gaps_in_slice(self, affine, plane)
 
     def _outer_slope(self, d: Array) -> Array:
         """Gradient of (1 + h(x)) / N(x) at unit directions, before it is made tangential."""
@@ -144,6 +176,11 @@ def head_shape(rng: np.random.Generator, centre: ArrayLike, *, thickness_scale: 
         World mm.
     thickness_scale : float
         Factor on the skull's thickness (4 to 9 mm at 1), for coarse grids.
+
+    Returns
+    -------
+    HeadShape
+        Without defects.
     """
     half_axes = np.array([[69.0, 89.0, 54.0], [69.0, 95.0, 87.0]]) * (1 + 0.02 * rng.uniform(-1, 1, (1, 3)))
     shape = np.array([0.012, 0.015, 0.012, 0.02, 0.03, 0.06, -0.015, 0.012])
@@ -154,12 +191,33 @@ def head_shape(rng: np.random.Generator, centre: ArrayLike, *, thickness_scale: 
 
 
 def lengths(p: Array) -> Array:
-    """Lengths (...) of vectors (..., 3); much faster than `numpy.linalg.norm` on many short vectors."""
+    """Lengths of vectors; much faster than `numpy.linalg.norm` on many short ones.
+
+    Parameters
+    ----------
+    p : ndarray, shape (..., 3)
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
     return np.sqrt(np.einsum("...i,...i->...", p, p))
 
 
 def polynomial(coefficients: Array, terms: tuple[tuple[int, int, int], ...], x: Array) -> Array:
-    """Sum of coefficient times monomial at points (..., 3)."""
+    """Sum of coefficient times monomial.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (n,)
+    terms : tuple of tuple of int
+        n powers (i, j, k) of x^i y^j z^k.
+    x : ndarray, shape (..., 3)
+
+    Returns
+    -------
+    ndarray, shape (...)
+    """
     total = np.zeros(x.shape[:-1])
     for coefficient, powers in zip(coefficients, terms, strict=True):
         total += _monomial(float(coefficient), powers, x)
@@ -167,7 +225,19 @@ def polynomial(coefficients: Array, terms: tuple[tuple[int, int, int], ...], x: 
 
 
 def polynomial_gradient(coefficients: Array, terms: tuple[tuple[int, int, int], ...], x: Array) -> Array:
-    """Gradient, shape (..., 3), of `polynomial`."""
+    """Gradient of `polynomial`.
+
+    Parameters
+    ----------
+    coefficients : ndarray, shape (n,)
+    terms : tuple of tuple of int
+        n powers (i, j, k) of x^i y^j z^k.
+    x : ndarray, shape (..., 3)
+
+    Returns
+    -------
+    ndarray, shape (..., 3)
+    """
     gradient = np.zeros(x.shape)
     for coefficient, powers in zip(coefficients, terms, strict=True):
         for axis in np.flatnonzero(powers):

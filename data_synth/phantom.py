@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 AIR, BRAIN, SOFT, CORTICAL, DIPLOE, METAL, PLATE = -1000.0, 35.0, 50.0, 1200.0, 650.0, 3071.0, 550.0
 """HU of the tissues."""
 _TEXTURE = 90.0  # standard deviation of the diploe's HU: a few voxels fall below a bone threshold of 400
-_NECK = (56.0, 66.0, 8.0)  # half axes across and along, and how far back it stands, in mm
+_NECK = (56.0, 66.0, 8.0)  # half axes across and along, and how far back it lies, in mm
 _NECK_TOP = -15.0  # mm from the centre; the neck starts inside the head
 
 
@@ -84,6 +84,11 @@ def phantom_case(
     tilt_deg : float
         Lean of the planes about the x axis (gantry tilt); the affine then has a shear.
 
+    Returns
+    -------
+    Case
+        CT, defective skull and missing bone on one grid, with the closed-form head.
+
     Raises
     ------
     ValueError
@@ -110,6 +115,11 @@ def leaning(affine: ArrayLike, tilt_deg: float) -> Array:
         Voxel -> world mm.
     tilt_deg : float
         Positive raises the rows at the back.
+
+    Returns
+    -------
+    ndarray, shape (4, 4)
+        Voxel -> world mm.
     """
     affine, angle = np.array(affine, float), np.deg2rad(tilt_deg)
     c, s = np.cos(angle), np.sin(angle)
@@ -174,7 +184,7 @@ def _upright_affine(grid: Size) -> Array:
 
 
 def _head_centre(grid: Size) -> Array:
-    """Where the head lies: the vertex 9 mm under the top plane, a little aside of the middle, room at the back."""
+    """Where the head lies: the vertex 9 mm under the top plane, a little aside of the middle, more space behind."""
     start, steps = _upright_affine(grid)[:3, 3], np.array(grid.spacing[::-1])
     extent = steps * (np.array(grid.shape[::-1]) - 1)
     return start + extent * [0.5, 0.5, 1.0] + [2.3, -6.1, -100.4]

@@ -119,6 +119,16 @@ def write_dicom(
 def new_folder(folder: str | Path) -> Iterator[Path]:
     """A temporary folder beside `folder` that takes its place at the end, or vanishes after an error.
 
+    Parameters
+    ----------
+    folder : path
+        A new or an empty folder.
+
+    Returns
+    -------
+    context manager
+        Gives the path of the temporary folder.
+
     Raises
     ------
     FileExistsError

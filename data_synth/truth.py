@@ -6,13 +6,12 @@ Frame: slice (row, col) px, found by intersecting the closed-form surfaces with 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from .head import HeadShape
+from .head import HeadShape
 
 Array = NDArray[np.float64]
 _N_RAYS = 720
@@ -72,7 +71,13 @@ class SliceTruth:
         return self.outer is not None and self.inner is not None
 
     def as_dict(self) -> dict[str, Any]:
-        """JSON-able ends, tangents and angles."""
+        """JSON-able ends, tangents and angles.
+
+        Returns
+        -------
+        dict
+            plane, defect, open; outer and inner with ends and tangents (px) and angles (degrees), None where whole.
+        """
         record: dict[str, Any] = {"plane": self.plane, "defect": self.defect, "open": self.is_open}
         for name, gap in (("outer", self.outer), ("inner", self.inner)):
             record[name] = gap and {
@@ -112,6 +117,7 @@ class _Plane:
         return self.radius(p) - length
 
     def radius(self, p: Array) -> Array:
+        """Radii (...) of the surface in mm, along the rays through points (..., 3)."""
         d = p / np.linalg.norm(p, axis=-1, keepdims=True)
         return self.head.inner_radius(d) if self.surface else self.head.outer_radius(d)
 
@@ -149,9 +155,14 @@ def gaps_in_slice(head: HeadShape, affine: Array, plane: float) -> tuple[SliceTr
     head : HeadShape
         With its cutters.
     affine : ndarray, shape (4, 4)
-        Voxel (plane, row, col) -> world mm; planes may lean but must not stand upright.
+        Voxel (plane, row, col) -> world mm; planes may lean, but not along the head's axis.
     plane : float
         Plane index.
+
+    Returns
+    -------
+    tuple of SliceTruth
+        In the order of the defects; empty where none takes bone.
 
     Notes
     -----

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from cranio_nb.drawing import figures
-from cranio_nb.drawing.shading import skull_surface
+from cranio_nb.drawing.coarse_skull import skull_surface
 from cranio_nb.mesh import Mesh
 from cranio_nb.methods.slicewise import SlicedDesign
 from cranio_nb.pipeline.run import RunResult, run_design
@@ -33,7 +33,7 @@ def views(result: RunResult) -> list[Figure]:
     """The skull with its opening, and closed."""
     opening = result.case.openings[0]
     skull = skull_surface(result.case.bone, float(opening.head_centre[2]) - 10.0)
-    return [figures.view_figure(skull, mesh, opening.direction, px=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
+    return [figures.view_figure(skull, mesh, opening.direction, px_mm=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
 
 
 def middle_slice(result: RunResult) -> Figure:

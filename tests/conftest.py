@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 from cranio_nb.opening import Opening
+from cranio_nb.prior.learning import learn_prior
+from cranio_nb.prior.shape_prior import Prior
 from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case
@@ -47,6 +49,18 @@ def skull(phantom) -> Callable[..., Volume]:
 def openings(skull) -> Callable[..., tuple[Opening, ...]]:
     """`openings(defect, seed)`: the openings found in `skull(defect, seed)`, once."""
     return cache(lambda defect="unilateral", seed=0: find_openings(skull(defect, seed)))
+
+
+@pytest.fixture(scope="session")
+def intact(phantom) -> Callable[[int], Volume]:
+    """`intact(seed)`: a whole tiny head."""
+    return lambda seed: Volume(phantom("round", seed).complete, phantom("round", seed).affine)
+
+
+@pytest.fixture(scope="session")
+def learned(intact) -> Prior:
+    """A shape prior of four tiny heads, seeds 1 to 4."""
+    return learn_prior(intact(seed) for seed in range(1, 5))
 
 
 @pytest.fixture(scope="session")

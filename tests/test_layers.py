@@ -30,7 +30,7 @@ FLOORS = [  # a folder imports only what stands above it in this list; the nouns
 ]
 LIGHT = FLOORS[: FLOORS.index("implant") + 1]  # these load no heavy library
 HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
-OWNERS = {"matplotlib": "drawing.figures", "pyvista": "drawing.scene3d", "ipywidgets": "teaching.widgets.live"}
+OWNERS = {"matplotlib": "drawing.figures.axes", "pyvista": "drawing.scene3d", "ipywidgets": "teaching.widgets.live"}
 SHARED_BY_METHODS = {"catalogue", "assembly"}
 
 
@@ -147,3 +147,12 @@ def test_the_package_itself_brings_its_reader_and_nothing_heavier_than_numpy():
     loaded = {name.split(".")[0] for name in run.stdout.split()}
     assert "numpy" in loaded
     assert not loaded & {*HEAVY, "scipy", "skimage", "pydicom"}
+
+
+def test_only_volume_and_the_readers_know_the_affine():
+    """Everything else asks a `Volume`; in the exercises the learner writes the formula."""
+    free = {"volume", "grid", "teaching.exercises.ct", "teaching.exercises.image"}
+    for name, path in MODULES.items():
+        if name not in free and not name.startswith("readers."):
+            text = path.read_text()
+            assert "affine[:3" not in text and "linalg.inv(affine" not in text, name

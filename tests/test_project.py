@@ -17,8 +17,11 @@ from packaging.specifiers import SpecifierSet
 from packaging.utils import canonicalize_name
 
 import cranio_nb
-from cranio_nb.cli.doctor import examine
+from cranio_nb.cli.examination import examine
 from cranio_nb.cli.main import main
+from cranio_nb.output.design_folder import FILES
+from data_synth import phantom_case
+from data_synth.files import write_case
 
 ROOT = Path(__file__).parent.parent
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())
@@ -201,6 +204,15 @@ class TestCheckScript:
         assert asked.stdout == command
         assert 'bash -c "$command"' in text.splitlines()
 
+    def test_the_numerics_for_a_second_kernel_are_there(self):
+        (taking,) = re.findall(r"^numerics=\(.*?\)$", self.script.read_text(), re.M | re.S)
+        listing = f'{taking}; printf "%s\\n" "${{numerics[@]}}"'
+        names = subprocess.run(["bash", "-c", listing], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        for path, _, test in (name.partition("::") for name in names.split()):
+            place = ROOT / path
+            files = [place] if place.is_file() else sorted(place.rglob("test_*.py"))
+            assert files and any(f"def {test}" in file.read_text() for file in files)
+
     def test_is_a_program_that_stops_at_the_first_failure(self):
         assert self.script.stat().st_mode & 0o111
         assert self.script.read_text().splitlines()[2] == "set -euo pipefail"
@@ -240,3 +252,16 @@ class TestTrackedFiles:
 
     def test_none_names_a_host(self, tracked):
         assert not {str(path): hit[0] for path, text in tracked.items() if (hit := HOST.search(text))}
+
+
+class TestReadmeExample:
+    def test_the_python_of_the_readme_runs_on_what_the_demo_leaves(self, tmp_path, monkeypatch, capsys):
+        (block,) = re.findall(r"```python\n(.*?)```", README, re.S)
+        write_case(tmp_path / "cranio_nb_out" / "demo", phantom_case("tiny", "unilateral", 0))
+        monkeypatch.chdir(tmp_path)
+        exec(compile(block, "README", "exec"), {})
+        sound, dice = capsys.readouterr().out.split()
+        assert sound == "True" and 0.9 < float(dice) <= 1
+        assert {path.name for path in (tmp_path / "cranio_nb_out" / "by_hand").iterdir()} == set(FILES) - {
+            "report.html"
+        }

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.volume import AxisOrder, Volume, canonical_order, same_grid
+from cranio_nb.grid import AxisOrder, canonical_order
+from cranio_nb.volume import Volume, check_same_grid, same_grid
 
 ORDERS = [AxisOrder(axes, flips) for axes in permutations(range(3)) for flips in product((False, True), repeat=3)]
 
@@ -150,3 +151,37 @@ def test_same_grid_looks_at_the_corners():
     assert not same_grid(v, Volume(v.voxels, stretched))
     assert not same_grid(v, v.crop(np.s_[:3, :, :]))
     assert not same_grid(v, v.reorder(AxisOrder((0, 1, 2), (True, False, False))))
+
+
+def test_a_value_is_that_of_the_voxel_around_the_point():
+    v = oblique()
+    index = np.argwhere(np.ones(v.shape, bool))
+    nudge = np.random.default_rng(4).uniform(-0.45, 0.45, index.shape)
+    np.testing.assert_array_equal(v.at(v.to_world(index + nudge), outside=-1), v.voxels.ravel())
+    assert (v.at(v.to_world(index + np.array(v.shape)), outside=-1) == -1).all()
+
+
+def test_steps_and_axes_undo_each_other():
+    v = oblique()
+    np.testing.assert_allclose(np.linalg.norm(v.axes, axis=1), 1)
+    np.testing.assert_allclose(v.axes * v.spacing[:, None], v.edges)
+    np.testing.assert_allclose(v.steps(v.edges), np.eye(3), atol=1e-12)
+    away = np.array([3.0, -4.0, 1.0])
+    np.testing.assert_allclose(v.to_voxel(v.to_world([1, 2, 3]) + away), np.array([1, 2, 3]) + v.steps(away), atol=1e-9)
+
+
+def test_the_box_of_a_mask_is_the_least_that_holds_it():
+    mask = np.zeros((6, 7, 8), bool)
+    mask[2:4, 5, 1:7] = True
+    v = Volume(mask, np.eye(4))
+    assert v.crop(v.box()).voxels.shape == (2, 1, 6) and v.crop(v.box()).voxels.all()
+    assert v.box((0, 9, 1)) == (slice(2, 4), slice(0, 7), slice(0, 8))
+    assert v.crop(v.with_voxels(~mask & mask).box()).voxels.size == 0
+
+
+def test_volumes_on_other_grids_are_refused_by_name():
+    v = oblique()
+    check_same_grid(v, v.with_voxels(v.voxels * 2), "patch and bone")
+    with pytest.raises(InputRefused, match="patch and bone") as refused:
+        check_same_grid(v, v.crop(np.s_[1:, :, :]), "patch and bone")
+    assert refused.value.code == "GridMismatch"

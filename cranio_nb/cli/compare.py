@@ -9,18 +9,16 @@ import click
 
 from ..errors import InputRefused, NoOpening
 from ..methods.catalogue import METHODS
-from ..readers import ALLOWANCES
+from .options import PATH, allow, check_not_input, debug, mask, threshold, truth
 
 if TYPE_CHECKING:
     from ..pipeline.compare import Comparison, Measure
 
-_PATH = click.Path(path_type=Path)
-
 
 @click.command()
-@click.argument("scan", type=_PATH, metavar="INPUT")
-@click.option("--truth", type=_PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against.")
-@click.option("--out", type=_PATH, help="Folder for comparison.html, .csv and .json; made if missing.")
+@click.argument("scan", type=PATH, metavar="INPUT")
+@truth
+@click.option("--out", type=PATH, help="Folder for comparison.html, .csv and .json; made if missing.")
 @click.option(
     "--method",
     "methods",
@@ -28,9 +26,10 @@ _PATH = click.Path(path_type=Path)
     metavar="NAME",
     help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated.  [default: all]",
 )
-@click.option("--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 need no telling.")
-@click.option("--threshold", type=float, metavar="HU", help="Lowest HU of bone.  [default: 400]")
-@click.option("--allow", multiple=True, type=click.Choice(ALLOWANCES), help="Relax one check of the reader.")
+@mask
+@threshold
+@allow
+@debug
 def compare(
     scan: Path,
     truth: Path | None,
@@ -50,7 +49,7 @@ def compare(
       cranio-nb compare case1/ct --truth case1/truth.nii.gz --out compared
       cranio-nb compare skull.nii.gz --mask --method slicewise --method slicewise:paper
     """
-    from ..output.comparison_page import FILES, write_comparison
+    from ..output.comparison_folder import FILES, write_comparison
     from ..output.staging import check_folder, staged
     from ..pipeline.compare import compare as run_all
     from ..pipeline.run import prepare
@@ -62,14 +61,13 @@ def compare(
     except InputRefused as error:
         raise click.BadParameter(str(error), param_hint="--method") from None
     if out is not None:
-        if out.resolve() == scan.resolve():
-            raise click.BadParameter("this is the input; nothing is ever written there.", param_hint="--out")
+        check_not_input(out, scan)
         check_folder(out, FILES)
-    with progress_bar() as tell:
-        case = prepare(scan, mask=mask or None, threshold=threshold, truth=truth, allow=allow, progress=tell)
-        found = run_all(case, asked, progress=lambda name, done: tell(name, 0.4 + 0.5 * done))
+    with progress_bar() as progress:
+        case = prepare(scan, mask=mask or None, threshold=threshold, truth=truth, allow=allow, progress=progress)
+        found = run_all(case, asked, progress=lambda name, done: progress(name, 0.4 + 0.5 * done))
         if out is not None:
-            tell("report", 0.92)
+            progress("report", 0.92)
             with staged(out) as part:
                 write_comparison(found, part)
     _print(found, out)
@@ -78,15 +76,15 @@ def compare(
 
 
 def _print(found: Comparison, out: Path | None) -> None:
-    """The tables, the sentences of those that refused, and where to look."""
-    from ..output.comparison_page import tables
+    """Print the tables, the sentences of those that refused, and where the page is."""
+    from ..output.comparison_tables import tables
     from ..pipeline.compare import MEASURES
     from .console import print_table
 
     for part in tables(found):
         columns = {key: MEASURES[key] for key in part["keys"]}
         rows = [
-            [trial.contender.name, *(_shown(row[key], what.digits) for key, what in columns.items())]
+            [trial.contender.name, *(_cell(row[key], what.digits) for key, what in columns.items())]
             for trial, row in zip(found.trials, found.rows, strict=True)
         ]
         print_table(part["title"], ("", *(what.short for what in columns.values())), rows)
@@ -98,7 +96,8 @@ def _print(found: Comparison, out: Path | None) -> None:
         click.echo(f"page: {out / 'comparison.html'}")
 
 
-def _shown(value: float, digits: int) -> str:
+def _cell(value: float, digits: int) -> str:
+    """A number of the table; a dash for none (NaN)."""
     return "-" if value != value else f"{value:.{digits}f}"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,11 +13,11 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from ..output.files import jsonable
+from ..output.files import json_text
 from ..readers import LoadReport
 
 if TYPE_CHECKING:
-    from ..evaluation.paper_tables import OpeningSize
+    from ..evaluation.opening_size import OpeningSize
     from ..pipeline.run import RunResult
 
 _PIPED_WIDTH = 110  # columns of a table that no terminal shows
@@ -26,7 +25,18 @@ _PIPED_WIDTH = 110  # columns of a table that no terminal shows
 
 @contextmanager
 def progress_bar() -> Iterator[Callable[[str, float], None]]:
-    """A bar on stderr, gone when done; yields ``tell(step, fraction)``. Nothing where stderr is no terminal."""
+    """A bar on stderr, gone when done; nothing where stderr is no terminal.
+
+    Returns
+    -------
+    context manager of callable
+        ``progress(step, fraction)``, with the name of the step and the done fraction of the whole, 0 to 1.
+
+    Examples
+    --------
+    >>> with progress_bar() as progress:
+    ...     progress("reading", 0.5)
+    """
     console = Console(stderr=True)
     columns = (TextColumn("{task.description:14}"), BarColumn(), TimeElapsedColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
@@ -35,12 +45,34 @@ def progress_bar() -> Iterator[Callable[[str, float], None]]:
 
 
 def print_json(data: Any) -> None:
-    """Strict JSON on stdout."""
-    click.echo(json.dumps(jsonable(data), indent=2, ensure_ascii=False, allow_nan=False))
+    """Print strict JSON on stdout.
+
+    Parameters
+    ----------
+    data : Any
+        As for `output.files.jsonable`.
+
+    Examples
+    --------
+    >>> print_json({"dice": 0.9})
+    {
+      "dice": 0.9
+    }
+    """
+    click.echo(json_text(data))
 
 
 def print_table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
-    """A table on stdout; plain text, never markup."""
+    """Print a table on stdout; plain text, never markup.
+
+    Parameters
+    ----------
+    title : str
+        Empty for none.
+    head : sequence of str
+        Name of each column; no head where all are empty.
+    rows : sequence of sequence of str
+    """
     table = Table(title=title or None, title_justify="left", title_style="bold", box=SIMPLE_HEAD, show_header=any(head))
     for name in head:
         table.add_column(name, overflow="fold")
@@ -53,7 +85,12 @@ def print_table(title: str, head: Sequence[str], rows: Sequence[Sequence[str]]) 
 
 
 def print_load(load: LoadReport) -> None:
-    """A load report as tables."""
+    """Print a load report as tables.
+
+    Parameters
+    ----------
+    load : LoadReport
+    """
     rows = [
         ("Input", f"{load.source}, {'CT in HU' if load.kind == 'ct' else 'bone mask'}"),
         ("Planes x rows x columns", " x ".join(map(str, load.shape))),
@@ -67,7 +104,12 @@ def print_load(load: LoadReport) -> None:
 
 
 def print_openings(openings: Sequence[OpeningSize]) -> None:
-    """Openings as a table, nothing where there are none."""
+    """Print openings as a table; nothing where there are none.
+
+    Parameters
+    ----------
+    openings : sequence of OpeningSize
+    """
     rows = [
         (
             str(i),
@@ -83,7 +125,14 @@ def print_openings(openings: Sequence[OpeningSize]) -> None:
 
 
 def print_result(result: RunResult, out: Path) -> None:
-    """What a run found, in a few lines, and where to look."""
+    """Print what a run found, in a few lines, and where its report is.
+
+    Parameters
+    ----------
+    result : RunResult
+    out : Path
+        Folder of the report.
+    """
     for o in result.sizes:
         click.echo(f"opening: {o.place}, {o.length:.0f} x {o.width:.0f} mm, planes {o.planes[0]}:{o.planes[1]}")
     click.echo(f"volume: {result.mesh.volume / 1000:.2f} cm3")

@@ -6,11 +6,14 @@ from pathlib import Path
 
 import click
 
+from .options import PATH, debug
+
 
 @click.command()
-@click.argument("folder", required=False, type=click.Path(path_type=Path))
+@click.argument("folder", required=False, type=PATH)
 @click.option("--no-browser", is_flag=True, help="Print the address instead of opening a browser.")
 @click.option("--port", type=int, help="Port to listen on.  [default: 8888, or the next free one]")
+@debug
 def lab(folder: Path | None, no_browser: bool, port: int | None) -> None:
     """Open the lessons in JupyterLab, at the tour.
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-_PATH = click.Path(path_type=Path)
+from .options import PATH, debug
 
 
 @click.group()
@@ -17,14 +17,15 @@ def lessons() -> None:
     Examples:
       cranio-nb lessons build
       cranio-nb lessons html pages
-      cranio-nb lessons grade handed_in/*/04_balloon.ipynb
+      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
     """
 
 
 @lessons.command()
-@click.option("--folder", type=_PATH, default=Path("notebooks"), show_default=True, help="Holds src/NN_topic.py.")
+@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds src/NN_topic.py.")
 @click.option("--only", default="", metavar="NN", help="Only lessons whose name starts so, e.g. 04.")
 @click.option("--check", is_flag=True, help="Write nothing; exit code 1 if the notebooks are out of step.")
+@debug
 def build(folder: Path, only: str, check: bool) -> None:
     """Run the lesson texts and write the notebooks and the copies with exercises.
 
@@ -48,8 +49,9 @@ def build(folder: Path, only: str, check: bool) -> None:
 
 
 @lessons.command()
-@click.argument("out", type=_PATH)
-@click.option("--folder", type=_PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@click.argument("out", type=PATH)
+@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@debug
 def html(out: Path, folder: Path) -> None:
     """Write the lessons as web pages, every picture with its description; nothing is run.
 
@@ -64,7 +66,8 @@ def html(out: Path, folder: Path) -> None:
 
 
 @lessons.command()
-@click.argument("notebooks", nargs=-1, required=True, type=_PATH)
+@click.argument("notebooks", nargs=-1, required=True, type=PATH)
+@debug
 def grade(notebooks: tuple[Path, ...]) -> None:
     """Run notebooks that students hand in, and print the points of each exercise.
 
@@ -72,7 +75,7 @@ def grade(notebooks: tuple[Path, ...]) -> None:
 
     \b
     Example:
-      cranio-nb lessons grade handed_in/*/04_balloon.ipynb
+      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
     """
     from ..teaching.build import points
 

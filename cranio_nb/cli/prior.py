@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-_PATH = click.Path(path_type=Path)
+from .options import PATH, debug, threshold
 
 
 @click.group()
@@ -20,9 +20,10 @@ def prior() -> None:
 
 
 @prior.command()
-@click.argument("folder", type=_PATH)
-@click.option("--out", type=_PATH, required=True, metavar="NPZ", help="File to write, e.g. prior.npz.")
-@click.option("--threshold", type=float, metavar="HU", help="Lowest HU of bone.  [default: 400]")
+@click.argument("folder", type=PATH)
+@click.option("--out", type=PATH, required=True, metavar="NPZ", help="File to write, e.g. prior.npz.")
+@threshold
+@debug
 def learn(folder: Path, out: Path, threshold: float | None) -> None:
     """Learn a shape prior from a folder with one scan of each head.
 
@@ -34,25 +35,25 @@ def learn(folder: Path, out: Path, threshold: float | None) -> None:
       cranio-nb prior learn scans/intact --out prior.npz
     """
     from ..output.staging import check_folder
-    from ..prior.file import save
-    from ..prior.shape_prior import learn as learn_from
-    from ..prior.study import intact_skulls, learning_curve, scans_in
+    from ..prior.file import save_prior
+    from ..prior.learning import learn_prior
+    from ..prior.study import list_scans, measure_learning_curve, read_intact_skulls
     from ..stages.segmentation import BONE_HU
     from .console import print_table, progress_bar
 
     check_folder(out.absolute().parent, (out.name,))
-    scans = scans_in(folder)
-    with progress_bar() as tell:
-        bones = intact_skulls(
+    scans = list_scans(folder)
+    with progress_bar() as progress:
+        bones = read_intact_skulls(
             scans,
             threshold=BONE_HU if threshold is None else threshold,
             skipped=lambda name, why: click.echo(f"skipped {name}: {why}", err=True),
-            progress=tell,
+            progress=progress,
         )
-        made = learn_from(bones, tell)
-        rows = learning_curve(made, progress=tell) if len(made.radii) > 2 else ()
+        made = learn_prior(bones, progress)
+        rows = measure_learning_curve(made, progress=progress) if len(made.radii) > 2 else ()
         out.absolute().parent.mkdir(parents=True, exist_ok=True)
-        save(made, out)
+        save_prior(made, out)
     found = [(str(r.n_skulls), f"{r.outer:.2f}", f"{r.inner:.2f}") for r in rows]
     if found:
         print_table("Error in a hole of a skull that was left out", ("Skulls", "Outer (mm)", "Inner (mm)"), found)

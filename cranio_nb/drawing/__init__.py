@@ -1,1 +1,5 @@
-"""Arrays and meshes -> pictures. Matplotlib and pyvista are imported here only."""
+"""Arrays and meshes -> pictures.
+
+`palette` has the colours, `figures` the printed pictures, `canvas` the fast ones, `shading` the surfaces, `scene3d` the
+scenes to turn. Matplotlib is imported in `figures.axes` only, pyvista in `scene3d` only; nothing here knows a widget.
+"""

@@ -1,4 +1,4 @@
-"""Arrays and curves -> a picture as an RGB array, in a few milliseconds: what moves under a slider is drawn here.
+"""Arrays and curves -> a picture as an RGB array, in a few milliseconds: fast enough to follow a slider.
 
 Frames: canvas (x, y) px, y down; slices in (row, col) px through a `Window`; charts in their own units through a
 `Chart`. Everything is drawn at twice the size and halved at the end, which smooths lines and letters.
@@ -7,7 +7,6 @@ Frames: canvas (x, y) px, y down; slices in (row, col) px through a `Window`; ch
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,11 +15,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-RGB = NDArray[np.uint8]
-WHITE, BLACK, ORANGE, SKY, GREEN = "#FFFFFF", "#000000", "#E69F00", "#56B4E9", "#009E73"
-YELLOW, BLUE, VERMILLION, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
-BONE, GREY, PALE = "#D8D2C4", "#595959", "#DADADA"
-_SCALE = 2
+from .palette import BLACK, WHITE
+from .pixels import RGB, Window
+
+_SCALE = 2  # drawn larger by this
 
 
 class Canvas:
@@ -30,6 +28,13 @@ class Canvas:
     ----------
     width, height : int
         px of the finished picture.
+
+    Examples
+    --------
+    >>> canvas = Canvas(120, 80)
+    >>> canvas.line([(0, 40), (120, 40)], "#0072B2")
+    >>> canvas.array().shape
+    (80, 120, 3)
     """
 
     def __init__(self, width: int, height: int) -> None:
@@ -37,33 +42,66 @@ class Canvas:
         self._draw = ImageDraw.Draw(self._image)
 
     def copy(self) -> Canvas:
-        """The same picture, to draw on further."""
+        """The same picture, to draw on further.
+
+        Returns
+        -------
+        Canvas
+        """
         other = Canvas(1, 1)
         other._image = self._image.copy()
         other._draw = ImageDraw.Draw(other._image)
         return other
 
     def array(self) -> RGB:
-        """The finished picture, shape (height, width, 3)."""
+        """The finished picture.
+
+        Returns
+        -------
+        ndarray of uint8, shape (height, width, 3)
+        """
         return np.asarray(self._image.reduce(_SCALE))
 
     def place(self, rgb: RGB, x: float, y: float) -> None:
-        """Put an RGB array with its upper left corner at (x, y), one pixel for one."""
+        """Put pixels on the canvas, one for one.
+
+        Parameters
+        ----------
+        rgb : ndarray of uint8, shape (H, W, 3)
+        x, y : float
+            Their upper left corner.
+        """
         large = Image.fromarray(rgb).resize((_SCALE * rgb.shape[1], _SCALE * rgb.shape[0]), Image.Resampling.NEAREST)
         self._image.paste(large, (round(_SCALE * x), round(_SCALE * y)))
 
     def inlay(self, other: Canvas, x: float, y: float) -> None:
-        """Put another canvas with its upper left corner at (x, y)."""
+        """Put another canvas on this one.
+
+        Parameters
+        ----------
+        other : Canvas
+        x, y : float
+            Its upper left corner.
+        """
         self._image.paste(other._image, (round(_SCALE * x), round(_SCALE * y)))
 
     def show(self, rgb: RGB, window: Window, *, smooth: bool = False) -> None:
-        """Show a slice, shape (R, C, 3), in a window."""
+        """Show a slice in a window.
+
+        Parameters
+        ----------
+        rgb : ndarray of uint8, shape (R, C, 3)
+        window : Window
+        smooth : bool
+            Interpolate between pixels; otherwise each is a square.
+        """
         x, y, width, height = (round(v) for v in window.box)
         (top, bottom), (left, right) = window.rows, window.cols
         extent = (left + 0.5, top + 0.5, right + 0.5, bottom + 0.5)  # of pixel edges, not centres
         size, resample = (_SCALE * width, _SCALE * height), Image.Resampling.NEAREST
         if smooth and window.zoom != 1:  # interpolate at the finished size, where it is seen
             size, resample = (width, height), Image.Resampling.BILINEAR
+        # what the window sees beyond the slice is white
         part = Image.fromarray(rgb).transform(size, Image.Transform.EXTENT, extent, resample, fillcolor=WHITE)
         if part.size != (_SCALE * width, _SCALE * height):
             part = part.resize((_SCALE * width, _SCALE * height), Image.Resampling.NEAREST)
@@ -72,20 +110,51 @@ class Canvas:
     def line(
         self, points: ArrayLike, colour: str, *, width: float = 2.0, dash: tuple[float, float] | None = None
     ) -> None:
-        """Draw a polyline through canvas points, shape (n, 2); `dash` is (on, off) in px."""
+        """Draw a polyline.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 2)
+            (x, y).
+        colour : str
+        width : float
+            px.
+        dash : tuple of float, optional
+            Length of a dash and of the space after it, px.
+        """
         pieces = [np.asarray(points, float)] if dash is None else _dashes(np.asarray(points, float), *dash)
         for piece in pieces:
             flat = [tuple(p) for p in _SCALE * piece]
             self._draw.line(flat, fill=colour, width=max(1, round(_SCALE * width)), joint="curve")
 
     def dots(self, points: ArrayLike, colour: str, *, radius: float = 2.0, edge: str | None = None) -> None:
-        """Draw discs at canvas points, shape (n, 2), with an edge where one is named."""
+        """Draw discs.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 2)
+            (x, y) of their middles.
+        colour : str
+        radius : float
+            px.
+        edge : str, optional
+            Colour of an edge.
+        """
         r = _SCALE * radius
         for x, y in _SCALE * np.asarray(points, float).reshape(-1, 2):
             self._draw.ellipse((x - r, y - r, x + r, y + r), fill=colour, outline=edge, width=_SCALE)
 
     def arrow(self, start: ArrayLike, tip: ArrayLike, colour: str, *, width: float = 2.5) -> None:
-        """Draw an arrow between two canvas points."""
+        """Draw an arrow.
+
+        Parameters
+        ----------
+        start, tip : array_like, shape (2,)
+            (x, y).
+        colour : str
+        width : float
+            px of the shaft.
+        """
         a, b = np.asarray(start, float), np.asarray(tip, float)
         along = (b - a) / max(float(np.hypot(*(b - a))), 1e-9)
         across = np.array([-along[1], along[0]])
@@ -95,7 +164,14 @@ class Canvas:
         self._draw.polygon([tuple(p) for p in head], fill=colour)
 
     def area(self, box: tuple[float, float, float, float], colour: str) -> None:
-        """Fill a box (x, y, width, height)."""
+        """Fill a box.
+
+        Parameters
+        ----------
+        box : tuple of float
+            x, y, width, height; nothing is drawn where one of the sizes is not positive.
+        colour : str
+        """
         x, y, width, height = (_SCALE * v for v in box)
         if width > 0 and height > 0:
             self._draw.rectangle((x, y, max(x, x + width - 1), max(y, y + height - 1)), fill=colour)
@@ -111,19 +187,50 @@ class Canvas:
         anchor: str = "ls",
         halo: bool = False,
     ) -> None:
-        """Write at (x, y); `anchor` as in Pillow, e.g. "ls" left on the base line; `halo` for uneven ground."""
+        """Write a line of text.
+
+        Parameters
+        ----------
+        x, y : float
+        text : str
+        size : int
+            px.
+        colour : str
+        anchor : str
+            What of the text is at (x, y), as in Pillow, e.g. "ls" its left end on the base line.
+        halo : bool
+            White around the letters, to be read on any ground.
+        """
         rim = 2 * _SCALE if halo else 0
         at = (_SCALE * x, _SCALE * y)
         self._draw.text(at, text, colour, _font(_SCALE * size), anchor, stroke_width=rim, stroke_fill=WHITE)
 
     def scale_bar(self, x: float, y: float, length: float, text: str) -> None:
-        """A bar of `length` px whose left end stands at (x, y), with its length written above."""
+        """Draw a scale bar with its length written above.
+
+        Parameters
+        ----------
+        x, y : float
+            Its left end.
+        length : float
+            px.
+        text : str
+            Its length in words, e.g. "20 mm".
+        """
         self.line([(x, y), (x + length, y)], WHITE, width=7)
         self.line([(x + 1, y), (x + length - 1, y)], BLACK, width=3)
         self.text(x, y - 8, text, halo=True)
 
     def legend(self, x: float, y: float, entries: Sequence[tuple[str, str, str]]) -> None:
-        """Entries (colour, "line" | "dash" | "dot" | "area", text), one below the other, on white."""
+        """Draw a legend, one entry below the other, on white.
+
+        Parameters
+        ----------
+        x, y : float
+            Its upper left corner.
+        entries : sequence of (colour, kind, text)
+            The kind is "line", "dash", "dot" or "area".
+        """
         font = _font(_SCALE * 12)
         width = max(font.getlength(text) for _, _, text in entries) / _SCALE + 44
         self.area((x, y, width, 18 * len(entries) + 6), WHITE)
@@ -138,78 +245,31 @@ class Canvas:
             self.text(x + 36, middle, text, size=12, anchor="lm")
 
 
-@dataclass(frozen=True)
-class Window:
-    """The part of a slice that is seen, and where on the canvas.
+def round_length(longest: float) -> float:
+    """A round length for a scale bar or between ticks: 1, 2 or 5 times a power of ten.
 
     Parameters
     ----------
-    box : tuple of float
-        x, y, width, height on the canvas, px.
-    rows, cols : tuple of float
-        First and last (row, col) seen, px of the slice.
+    longest : float
+        Positive, in any unit.
+
+    Returns
+    -------
+    float
+        The largest one that is not above `longest`.
+
+    Examples
+    --------
+    >>> round_length(37.0), round_length(0.9)
+    (20.0, 0.5)
     """
-
-    box: tuple[float, float, float, float]
-    rows: tuple[float, float]
-    cols: tuple[float, float]
-
-    @classmethod
-    def around(cls, box: tuple[float, float, float, float], low: ArrayLike, high: ArrayLike) -> Window:
-        """The smallest window with square pixels that holds the (row, col) from `low` to `high`."""
-        low, high = np.asarray(low, float), np.asarray(high, float)
-        zoom = min(box[3] / (high[0] - low[0]), box[2] / (high[1] - low[1]))
-        middle, half = (low + high) / 2, np.array([box[3], box[2]]) / zoom / 2
-        (top, left), (bottom, right) = (middle - half).tolist(), (middle + half).tolist()
-        return cls(box, (top, bottom), (left, right))
-
-    @classmethod
-    def whole(cls, box: tuple[float, float, float, float], shape: tuple[int, ...]) -> Window:
-        """A whole slice of given shape (R, C)."""
-        return cls.around(box, (-0.5, -0.5), (shape[0] - 0.5, shape[1] - 0.5))
-
-    @property
-    def zoom(self) -> float:
-        """Canvas px per slice px."""
-        return self.box[2] / (self.cols[1] - self.cols[0])
-
-    def px(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Slice (row, col) -> canvas (x, y), shape (..., 2)."""
-        corner = np.array([self.rows[0], self.cols[0]])
-        return ((np.asarray(points, float) - corner) * self.zoom)[..., ::-1] + np.array(self.box[:2])
-
-
-def tinted(rgb: RGB, mask: NDArray[np.bool_], colour: str, alpha: float = 1.0) -> RGB:
-    """A picture with a colour laid over the mask, shape (R, C, 3)."""
-    out = rgb.copy()
-    out[mask] = ((1 - alpha) * rgb[mask] + alpha * np.array(rgb_of(colour))).astype(np.uint8)
-    return out
-
-
-def plain(shape: tuple[int, ...], colour: str = WHITE) -> RGB:
-    """An even picture of shape (R, C, 3)."""
-    return np.full((*shape[:2], 3), rgb_of(colour), np.uint8)
-
-
-def windowed(hu: NDArray, centre: float, width: float) -> RGB:
-    """HU -> grey, shape (R, C, 3): black below ``centre - width / 2``, white above ``centre + width / 2``."""
-    level = np.clip((hu.astype(np.float32) - (centre - width / 2)) * (255 / width), 0, 255).astype(np.uint8)
-    return np.repeat(level[..., None], 3, axis=2)
-
-
-def rgb_of(colour: str) -> tuple[int, int, int]:
-    """Red, green, blue of a name like "#0072B2", 0 to 255."""
-    return int(colour[1:3], 16), int(colour[3:5], 16), int(colour[5:7], 16)
-
-
-def round_length(longest: float) -> float:
-    """The largest of 1, 2, 5 times a power of ten that is not above `longest`."""
     power = 10.0 ** np.floor(np.log10(longest))
     return float(max(step * power for step in (1, 2, 5) if step * power <= longest))
 
 
 def _dashes(points: NDArray, on: float, off: float) -> list[NDArray]:
     """A polyline cut into dashes."""
+    # `at` is the length along the line up to each of its points
     at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     pieces = []
     for start in np.arange(0.0, at[-1], on + off):

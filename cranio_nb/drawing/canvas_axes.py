@@ -1,4 +1,4 @@
-"""Numbers -> a small chart on a canvas: axes, lines, bars, marks.
+"""Numbers -> a small chart on a canvas: axes, lines, bars.
 
 Frame: values in their own units inside, canvas (x, y) px outside.
 """
@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .canvas import BLACK, GREY, PALE, Canvas, round_length
+from .canvas import Canvas, round_length
+from .palette import BLACK, GREY, PALE
 
 _LEFT, _BELOW, _ABOVE, _RIGHT = 58, 40, 26, 12  # px around the plotted area for ticks, names and title
 
@@ -27,6 +28,12 @@ class Chart:
         Limits of the axes.
     log : bool
         Whether y is logarithmic.
+
+    Examples
+    --------
+    >>> chart = Chart((0, 0, 170, 166), (0, 10), (0, 1))
+    >>> chart.px([[0, 0], [10, 1]]).tolist()
+    [[58.0, 126.0], [158.0, 26.0]]
     """
 
     box: tuple[float, float, float, float]
@@ -36,12 +43,29 @@ class Chart:
 
     @property
     def area(self) -> tuple[float, float, float, float]:
-        """x, y, width, height of the plotted area."""
+        """The plotted area.
+
+        Returns
+        -------
+        tuple of float
+            x, y, width, height on the canvas, px.
+        """
         x, y, width, height = self.box
         return x + _LEFT, y + _ABOVE, width - _LEFT - _RIGHT, height - _ABOVE - _BELOW
 
     def px(self, points: ArrayLike) -> NDArray[np.float64]:
-        """Values (x, y) -> canvas px, shape (n, 2), kept within the plotted area."""
+        """Places of values on the canvas.
+
+        Parameters
+        ----------
+        points : array_like, shape (n, 2)
+            Values (x, y) in the units of the axes.
+
+        Returns
+        -------
+        ndarray, shape (n, 2)
+            (x, y), px of the canvas, kept within the plotted area.
+        """
         x, y, width, height = self.area
         values = np.asarray(points, float).reshape(-1, 2)
         across = (values[:, 0] - self.x[0]) / (self.x[1] - self.x[0])
@@ -50,8 +74,18 @@ class Chart:
         return np.column_stack([x + width * np.clip(across, 0, 1), y + height * (1 - np.clip(up, 0, 1))])
 
     def frame(self, canvas: Canvas, title: str, x_name: str) -> None:
-        """Draw axes, ticks and names; the title says what y is, with its unit."""
+        """Draw axes, ticks and names.
+
+        Parameters
+        ----------
+        canvas : Canvas
+        title : str
+            What y is, with its unit.
+        x_name : str
+            What x is, with its unit.
+        """
         x, y, width, height = self.area
+        # a pale line at each tick of y, a short mark at each of x
         for value in self._ticks_y():
             (_, at), *_ = self.px([[self.x[0], value]])
             canvas.line([(x, at), (x + width, at)], PALE, width=1)
@@ -60,12 +94,23 @@ class Chart:
             (at, _), *_ = self.px([[value, self.y[0]]])
             canvas.line([(at, y + height), (at, y + height + 4)], BLACK, width=1)
             canvas.text(at, y + height + 7, f"{value:g}", size=11, colour=GREY, anchor="ma")
+        # the axes over these, then their names
         canvas.line([(x, y), (x, y + height), (x + width, y + height)], BLACK, width=1)
         canvas.text(self.box[0] + 8, y - 11, title, size=13)
         canvas.text(x + width, y + height + 36, x_name, size=12, anchor="rs")
 
     def bars(self, canvas: Canvas, edges: NDArray, counts: NDArray, colour: str) -> None:
-        """Draw a histogram: counts of shape (n,) between edges of shape (n + 1,)."""
+        """Draw a histogram.
+
+        Parameters
+        ----------
+        canvas : Canvas
+        edges : ndarray, shape (n + 1,)
+            In units of x.
+        counts : ndarray, shape (n,)
+            In units of y.
+        colour : str
+        """
         base = self.area[1] + self.area[3]
         tops = self.px(np.column_stack([edges[:-1], counts]))
         ends = self.px(np.column_stack([edges[1:], counts]))
@@ -75,18 +120,42 @@ class Chart:
     def upright(
         self, canvas: Canvas, value: float, colour: str, *, width: float = 2.0, dash: tuple[float, float] | None = None
     ) -> None:
-        """Draw an upright line at a value of x."""
+        """Draw an upright line.
+
+        Parameters
+        ----------
+        canvas : Canvas
+        value : float
+            Where on the x axis.
+        colour : str
+        width : float
+            px.
+        dash : tuple of float, optional
+            Length of a dash and of the space after it, px.
+        """
         (at, _), *_ = self.px([[value, self.y[0]]])
         canvas.line([(at, self.area[1]), (at, self.area[1] + self.area[3])], colour, width=width, dash=dash)
 
     def level(self, canvas: Canvas, value: float, colour: str, *, dash: tuple[float, float] | None = None) -> None:
-        """Draw a level line at a value of y."""
+        """Draw a level line.
+
+        Parameters
+        ----------
+        canvas : Canvas
+        value : float
+            Where on the y axis.
+        colour : str
+        dash : tuple of float, optional
+            Length of a dash and of the space after it, px.
+        """
         canvas.line(self.px([[self.x[0], value], [self.x[1], value]]), colour, width=1.5, dash=dash)
 
     def _scaled(self, values: NDArray) -> NDArray[np.float64]:
+        """Values of y as they are laid out along the axis."""
         return np.log10(np.maximum(values, 1e-30)) if self.log else values.astype(float)
 
     def _ticks_y(self) -> NDArray[np.float64]:
+        """Where y has ticks: round values, or powers of ten."""
         if not self.log:
             return _ticks(*self.y)
         low, high = np.ceil(np.log10(self.y[0])), np.floor(np.log10(self.y[1]))

@@ -23,6 +23,7 @@ class Described:
     Parameters
     ----------
     png : bytes
+        The encoded picture.
     alt : str
         What is to be seen.
     line : str
@@ -78,22 +79,74 @@ def described(picture: Any, alt: str, line: str) -> Described:
 
 
 def bundle(picture: bytes, alt: str, line: str) -> Bundle:
-    """Data and metadata of one output: the picture (PNG), its alternative text, and the line."""
+    """A picture as one output of a notebook's cell.
+
+    Parameters
+    ----------
+    picture : bytes
+        PNG.
+    alt : str
+        What is to be seen, for those who cannot see it.
+    line : str
+        What stands for the picture where there is only text.
+
+    Returns
+    -------
+    dict
+        Data by media type.
+    dict
+        Metadata by media type: alternative text, and the size in px.
+
+    Examples
+    --------
+    >>> data, metadata = bundle(encoded_png(np.zeros((4, 6, 3), np.uint8)), "A black box.", "black")
+    >>> data["text/plain"], metadata["image/png"]
+    ('black', {'alt': 'A black box.', 'width': 6, 'height': 4})
+    """
     width, height = Image.open(io.BytesIO(picture)).size
     return {"image/png": picture, "text/plain": line}, {"image/png": {"alt": alt, "width": width, "height": height}}
 
 
 def encoded_png(rgb: NDArray[np.uint8]) -> bytes:
-    """Pixels, shape (H, W, 3), as PNG, small."""
+    """Pixels as PNG, small.
+
+    Parameters
+    ----------
+    rgb : ndarray of uint8, shape (H, W, 3)
+
+    Returns
+    -------
+    bytes
+
+    Examples
+    --------
+    >>> encoded_png(np.zeros((4, 6, 3), np.uint8))[1:4]
+    b'PNG'
+    """
     return _encoded(rgb, format="PNG", optimize=True)
 
 
 def encoded_jpeg(rgb: NDArray[np.uint8]) -> bytes:
-    """Pixels, shape (H, W, 3), as JPEG, fast, with sharp colours."""
+    """Pixels as JPEG, fast, with sharp colours.
+
+    Parameters
+    ----------
+    rgb : ndarray of uint8, shape (H, W, 3)
+
+    Returns
+    -------
+    bytes
+
+    Examples
+    --------
+    >>> encoded_jpeg(np.zeros((4, 6, 3), np.uint8))[:2].hex()
+    'ffd8'
+    """
     return _encoded(rgb, format="JPEG", quality=90, subsampling=0)
 
 
 def _encoded(rgb: NDArray[np.uint8], **options: Any) -> bytes:
+    """Pixels in a format of Pillow."""
     stream = io.BytesIO()
     Image.fromarray(rgb).save(stream, **options)
     return stream.getvalue()

@@ -8,20 +8,31 @@ import sys
 from ..errors import InputRefused
 
 MODES = ("static", "widget", "auto")
+"""Values of ``CRANIO_NB_MODE``."""
 
 
 def mode() -> str:
-    """How panels show themselves: "widget" with controls, or "static" as one picture.
+    """How panels show themselves.
 
-    Notes
-    -----
-    ``CRANIO_NB_MODE`` is "static", "widget" or "auto" (the default). "auto" looks for a front end: a kernel that a
-    Jupyter server, VS Code or Colab started. A notebook run by nbclient, nbconvert or nbval has none.
+    Returns
+    -------
+    {"widget", "static"}
+        With controls, or as one picture.
 
     Raises
     ------
     InputRefused
-        ``UnknownMode`` for any other word.
+        ``UnknownMode`` when ``CRANIO_NB_MODE`` is none of `MODES`.
+
+    Notes
+    -----
+    ``CRANIO_NB_MODE`` is "static", "widget" or "auto" (the default). "auto" searches for a front end: a kernel that a
+    Jupyter server, VS Code or Colab started. A notebook run by nbclient, nbconvert or nbval has none.
+
+    Examples
+    --------
+    >>> mode() in ("static", "widget")
+    True
     """
     asked = os.environ.get("CRANIO_NB_MODE", "auto")
     if asked not in MODES:
@@ -32,12 +43,23 @@ def mode() -> str:
 
 
 def is_local() -> bool:
-    """Whether the browser runs on the kernel's own machine, so that it can reach a port of the kernel."""
+    """Whether the browser runs on the kernel's own machine, so that it can reach a port of the kernel.
+
+    Returns
+    -------
+    bool
+    """
     return proxy() is None
 
 
 def proxy() -> str | None:
-    """What stands between kernel and browser, or None."""
+    """What lies between kernel and browser.
+
+    Returns
+    -------
+    str or None
+        Its name, e.g. "JupyterHub"; None where both are on one machine.
+    """
     if "google.colab" in sys.modules or "COLAB_RELEASE_TAG" in os.environ:
         return "Colab"
     marks = {
@@ -51,6 +73,7 @@ def proxy() -> str | None:
 
 
 def _has_front_end() -> bool:
+    """Whether a server or an editor started this kernel."""
     if "ipykernel" not in sys.modules:
         return False
     started = ("JPY_SESSION_NAME", "VSCODE_PID", "COLAB_RELEASE_TAG")  # a server names the notebook; nbclient does not

@@ -1,9 +1,8 @@
 """Meshes -> a scene to turn in a notebook, or a picture of it. The only importer of pyvista.
 
-Frame: world mm (LPS). Where the browser runs on this machine the scene is live and drawn by the browser; behind a
-proxy or a remote front end it is a page of its own inside the notebook; in static mode, and without pyvista, it is a
-picture by the package's own renderer. None of them needs OpenGL on the kernel's side, whose absence would end the
-kernel without a word.
+Frame: world mm (LPS). Where the browser runs on this machine, the scene is live and drawn by the browser. Behind a
+proxy or a remote front end it is a page of its own inside the notebook. In static mode, and without pyvista, it is a
+picture by the package's own renderer. None of them needs OpenGL in the kernel, which would crash where it is missing.
 """
 
 from __future__ import annotations
@@ -24,17 +23,20 @@ from ..errors import InputRefused
 from ..mesh import Mesh
 from ..prosthesis import Prosthesis
 from ..volume import Volume
-from .canvas import BLUE, GREEN, GREY, ORANGE, PURPLE, RGB, SKY, Canvas, rgb_of, round_length
+from .coarse_skull import skull_surface
 from .described import Bundle, bundle, encoded_png
-from .figures import colour_scale
 from .front_end import is_local, mode
-from .shading import Solid, render, skull_surface, view_axes
+from .palette import BLUE, GREEN, ORANGE, PURPLE, SKULL, SKY, rgb_shares
+from .pixels import RGB
+from .scene_picture import HEIGHT, WIDTH, Part, draw_parts, top_of_scale
+from .shading import up_in_view
+from .thinning import thin_mesh
 
 MAX_FACES = 150_000
 """Most faces that a browser is given live; a page of its own holds fewer."""
+COLOURS = (SKULL, BLUE, ORANGE, GREEN, SKY, PURPLE)
+"""Of the meshes of a scene in their order; a mesh alone takes the second."""
 _PAGE_FACES = 60_000
-COLOURS = ("#EDE7D8", BLUE, ORANGE, GREEN, SKY, PURPLE)
-_WIDTH, _HEIGHT, _BAR = 640, 480, 56  # px of a picture, and of the scale below it
 _NO_PYVISTA = 'Install "cranio-nb[view]" to turn the scene; this is a picture of it.'
 
 
@@ -59,7 +61,7 @@ def show(bone: Volume, made: Prosthesis) -> Scene:
     >>> cube[4:8, 4:8, 4:8] = True
     >>> skull, patch = Volume(~cube, np.eye(4)), Volume(cube, np.eye(4))
     >>> made = Prosthesis(extract_surface(patch), np.zeros(0, np.uint8), patch, "by hand")
-    >>> show(skull, made).line  # doctest: +ELLIPSIS
+    >>> show(skull, made).line
     '3-D scene: skull, prosthesis (by hand) (...'
     """
     alt = f"The skull in ivory and the prosthesis of the method {made.method} in blue, seen from outside the opening."
@@ -80,11 +82,11 @@ def show_meshes(
     Parameters
     ----------
     *meshes : Mesh
-        The skull first, then what stands in it.
+        World mm; the skull first, then what lies in it.
     alt : str
         What is to be seen, for those who cannot see it.
     colours : sequence of str, optional
-        "#RRGGBB" for each mesh.
+        "#RRGGBB" for each mesh; by default `COLOURS`.
     labels : sequence of str, optional
         Name of each mesh.
     scalars : sequence of ndarray, shape (V,), or None, optional
@@ -103,32 +105,38 @@ def show_meshes(
     ------
     InputRefused
         ``EmptyMesh`` when there is nothing to show, ``BadScene`` when a list does not fit the meshes.
+
+    Examples
+    --------
+    >>> square = Mesh(np.array([[0.0, 0, 0], [9, 0, 0], [0, 0, 9], [9, 0, 9]]), np.array([[0, 1, 2], [1, 3, 2]]))
+    >>> show_meshes(square, alt="A square.", labels=["square"]).line
+    '3-D scene: square (2 triangles).'
     """
     drawn = [mesh for mesh in meshes if len(mesh.faces)]
     if not drawn:
         raise InputRefused("EmptyMesh", "There is no mesh with faces to show.")
-    n = len(meshes)
-    palette = tuple(COLOURS[i % len(COLOURS)] for i in range(n)) if n > 1 else (COLOURS[1],)
-    parts = []
     for name, given in (("colours", colours), ("labels", labels), ("scalars", scalars)):
-        if given is not None and len(given) != n:
-            raise InputRefused("BadScene", f"{n} meshes were given {len(given)} {name}.", "Give one for each mesh.")
-    for i, mesh in enumerate(meshes):
-        values = None if scalars is None else scalars[i]
+        if given is not None and len(given) != len(meshes):
+            message = f"{len(meshes)} meshes were given {len(given)} {name}."
+            raise InputRefused("BadScene", message, "Give one for each mesh.")
+    return Scene(_parts(meshes, colours, labels, scalars), alt, unit, _towards(drawn, towards))
+
+
+def _parts(
+    meshes: Sequence[Mesh],
+    colours: Sequence[str] | None,
+    labels: Sequence[str] | None,
+    scalars: Sequence[NDArray | None] | None,
+) -> tuple[Part, ...]:
+    """The meshes that have faces, each with its colour, name and numbers."""
+    n = len(meshes)
+    colours = colours or ([COLOURS[i % len(COLOURS)] for i in range(n)] if n > 1 else [COLOURS[1]])
+    labels, scalars = labels or [""] * n, scalars or [None] * n
+    for mesh, values in zip(meshes, scalars, strict=True):
         if values is not None and np.shape(values) != (len(mesh.vertices),):
             raise InputRefused("BadScene", f"Scalars of shape {np.shape(values)} for {len(mesh.vertices)} vertices.")
-        parts.append(Part(mesh, (colours or palette)[i], labels[i] if labels else "", values))
-    return Scene(tuple(p for p in parts if len(p.mesh.faces)), alt, unit, _towards(drawn, towards))
-
-
-@dataclass(frozen=True, eq=False)
-class Part:
-    """A mesh of a scene, its colour and name, and numbers at its vertices or None."""
-
-    mesh: Mesh
-    colour: str
-    label: str
-    values: NDArray | None
+    parts = map(Part, meshes, colours, labels, scalars)
+    return tuple(part for part in parts if len(part.mesh.faces))
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,10 +147,11 @@ class Scene:
     ----------
     parts : tuple of Part
     alt : str
+        What is to be seen, for those who cannot see it.
     unit : str
         Of the parts' values.
     towards : ndarray, shape (3,)
-        From the scene to the viewer.
+        Unit vector from the scene to the viewer, LPS.
     """
 
     parts: tuple[Part, ...]
@@ -152,18 +161,33 @@ class Scene:
 
     @property
     def top(self) -> float | None:
-        """Upper end of the colour scale: the 99th percentile, rounded; None without values."""
-        values = [part.values for part in self.parts if part.values is not None]
-        return max(float(np.percentile(np.concatenate(values), 99)), 1e-3) if values else None
+        """Number at the upper end of the colour scale.
+
+        Returns
+        -------
+        float or None
+            In `unit`; None without values.
+        """
+        return top_of_scale(self.parts)
 
     @cached_property
     def picture(self) -> RGB:
-        """The scene as pixels, shape (H, W, 3)."""
-        return picture(self)
+        """The scene as pixels.
+
+        Returns
+        -------
+        ndarray of uint8, shape (H, W, 3)
+        """
+        return draw_parts(self.parts, self.towards, unit=self.unit)
 
     @cached_property
     def line(self) -> str:
-        """One line for where there is only text."""
+        """One line for where there is only text.
+
+        Returns
+        -------
+        str
+        """
         faces = sum(len(part.mesh.faces) for part in self.parts)
         names = ", ".join(part.label for part in self.parts if part.label)
         return f"3-D scene{': ' + names if names else ''} ({faces} triangles)."
@@ -179,69 +203,65 @@ class Scene:
 
     @cached_property
     def viewer(self) -> Any:
-        """A live scene, drawn by the browser and fed by this kernel."""
+        """A live scene, drawn by the browser and fed by this kernel.
+
+        Returns
+        -------
+        pyvista's viewer
+        """
         return plotter(self).show(jupyter_backend="client", return_viewer=True)
 
     @cached_property
     def page(self) -> str:
-        """The scene as HTML that needs no kernel and no network."""
+        """The scene as HTML that needs no kernel and no network.
+
+        Returns
+        -------
+        str
+        """
         inner = html.escape(plotter(self, _PAGE_FACES).trame.export_html(None).getvalue(), quote=True)
         title = html.escape(self.alt, quote=True)
-        return f'<iframe title="{title}" srcdoc="{inner}" style="width:100%;height:{_HEIGHT}px;border:0"></iframe>'
+        return f'<iframe title="{title}" srcdoc="{inner}" style="width:100%;height:{HEIGHT}px;border:0"></iframe>'
 
 
 def plotter(scene: Scene, max_faces: int = MAX_FACES) -> Any:
-    """The scene in pyvista, its large meshes thinned out; nothing is rendered on this side."""
+    """The scene in pyvista, its large meshes thinned; nothing is rendered by this process.
+
+    Parameters
+    ----------
+    scene : Scene
+    max_faces : int
+        Of all parts together.
+
+    Returns
+    -------
+    pyvista.Plotter
+    """
     os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkOSOpenGLRenderWindow")
     sys.modules.setdefault("trame.widgets.vtklocal", None)  # type: ignore[arg-type]  # or it looks for a download
     import pyvista as pv  # noqa: TID251  (this is the module that may)
     import trame_pyvista  # noqa: F401  (else "client" means another mode)
 
-    made = pv.Plotter(notebook=True, window_size=[_WIDTH, _HEIGHT])
+    made = pv.Plotter(notebook=True, window_size=[WIDTH, HEIGHT])
     made.suppress_rendering = True
     budget = max_faces // len(scene.parts)  # faces of each part
     for part in scene.parts:
         values = np.zeros(len(part.mesh.vertices)) if part.values is None else part.values
-        mesh, carried = thinned(part.mesh, np.column_stack([part.mesh.vertex_normals, values]), budget)
+        mesh, carried = thin_mesh(part.mesh, np.column_stack([part.mesh.vertex_normals, values]), budget)
         surface = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces.astype(int))
         # the normals of the full mesh: those of the thinned one turn black where two of its faces fold together
         surface.point_data.active_normals = carried[:, :3]
         if part.values is not None:
             surface["values"] = carried[:, 3]
-        made.add_mesh(surface, name=part.label or None, smooth_shading=True, **_look(part, scene))
+        made.add_mesh(surface, name=part.label or None, smooth_shading=True, **_colouring(part, scene))
     made.camera_position = _camera(scene)
     return made
 
 
-def thinned(mesh: Mesh, carried: NDArray, max_faces: int) -> tuple[Mesh, NDArray[np.float64]]:
-    """A mesh with at most so many faces, for the eye only: the vertices of each cell of a grid become one.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    carried : ndarray, shape (V, K)
-        Numbers at its vertices, averaged with them.
-    max_faces : int
-
-    Notes
-    -----
-    Vertex clustering after Rossignac and Borrel 1993. Quadric decimation keeps shapes better, but can take a minute.
-    """
-    cell = np.sqrt(2 * mesh.areas.sum() / max_faces)
-    points, faces = np.column_stack([mesh.vertices, carried]), mesh.faces
-    while len(faces) > max_faces:
-        _, group, sizes = np.unique(np.floor(points[:, :3] / cell), axis=0, return_inverse=True, return_counts=True)
-        points = np.column_stack([np.bincount(group.ravel(), column) / sizes for column in points.T])
-        faces = group.ravel()[faces]
-        faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
-        cell *= 1.15
-    return Mesh(points[:, :3], faces), points[:, 3:]
-
-
-def _look(part: Part, scene: Scene) -> dict[str, Any]:
+def _colouring(part: Part, scene: Scene) -> dict[str, Any]:
     """How pyvista colours a part. Colours are floats: whole numbers come out dark."""
     if part.values is None:
-        return {"color": tuple(v / 255.0 for v in rgb_of(part.colour))}
+        return {"color": tuple(rgb_shares(part.colour).tolist())}
     bar = {"title": scene.unit}
     return {"scalars": "values", "cmap": "cividis", "clim": (0.0, scene.top), "scalar_bar_args": bar}
 
@@ -250,53 +270,12 @@ def _camera(scene: Scene) -> list[tuple[float, ...]]:
     """Position, focal point and up for a view of the whole scene."""
     low, high = _bounds([part.mesh for part in scene.parts])
     middle = (low + high) / 2
-    up = (0.0, 0.0, 1.0) if abs(scene.towards[2]) < 0.95 else (0.0, -1.0, 0.0)
     place = middle + 1.6 * np.linalg.norm(high - low) * scene.towards
-    return [tuple(place.tolist()), tuple(middle.tolist()), up]
-
-
-def picture(scene: Scene) -> RGB:
-    """Draw a scene without OpenGL, shape (H, W, 3): names of the parts, a length, a colour scale."""
-    px = _pixel(scene)
-    solids = [Solid(part.mesh, _vertex_colours(part, scene.top)) for part in scene.parts]
-    seen = (255 * render(solids, scene.towards, px=px).rgb).astype(np.uint8)
-    tall, wide = seen.shape[:2]
-    named = [(part.colour, "area", part.label) for part in scene.parts if part.label and part.values is None]
-    width = max(_WIDTH, wide + 20)
-    canvas = Canvas(width, tall + 40 + (_BAR if scene.top else 0))
-    canvas.place(seen, (width - wide) / 2, 10)
-    if named:
-        canvas.legend(6, 6, named)
-    length = round_length(0.2 * wide * px)
-    canvas.scale_bar(14, tall + 28, length / px, f"{length:g} mm")
-    if scene.top:
-        _colour_bar(canvas, (width / 2 - 140, tall + 44), scene)
-    return canvas.array()
-
-
-def _pixel(scene: Scene) -> float:
-    """Mm per px at which the scene just fits its picture."""
-    flat = np.concatenate([part.mesh.vertices for part in scene.parts]) @ view_axes(scene.towards)[:2].T
-    return float((np.ptp(flat, axis=0) / (_WIDTH - 40, _HEIGHT - 80)).max())
-
-
-def _colour_bar(canvas: Canvas, at: tuple[float, float], scene: Scene) -> None:
-    top = scene.top or 1.0
-    ramp = colour_scale(top).to_rgba(np.linspace(0, top, 280), bytes=True)[:, :3]
-    canvas.place(np.broadcast_to(ramp, (14, 280, 3)).copy(), *at)
-    for share, sign, anchor in ((0.0, "", "la"), (0.5, "", "ma"), (1.0, "\N{GREATER-THAN OR EQUAL TO} ", "ra")):
-        text = f"{sign}{share * top:.2g} {scene.unit}"
-        canvas.text(at[0] + 280 * share, at[1] + 19, text, size=12, colour=GREY, anchor=anchor)
-
-
-def _vertex_colours(part: Part, top: float | None) -> NDArray[np.float64]:
-    """RGB, 0 to 1, shape (3,) or (V, 3)."""
-    if part.values is None or top is None:
-        return np.array(rgb_of(part.colour)) / 255
-    return colour_scale(top).to_rgba(np.asarray(part.values, float))[:, :3]
+    return [tuple(place.tolist()), tuple(middle.tolist()), tuple(up_in_view(scene.towards).tolist())]
 
 
 def _bounds(meshes: Sequence[Mesh]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Lowest and highest x, y, z of the vertices that faces use, mm."""
     points = np.concatenate([mesh.vertices[np.unique(mesh.faces)] for mesh in meshes])
     return points.min(axis=0), points.max(axis=0)
 

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
-from skimage.measure import marching_cubes
 
 from ..mesh import Mesh
-from ..volume import Volume
 
-_COARSE = 1.3  # mm: voxels of the skull drawn as surroundings
-_MARGIN = 1.0  # mm left free around what is drawn
-_OUTLINE = 2.5  # mm: a jump in depth from which an outline is drawn
+_MARGIN_MM = 1.0  # left free around what is drawn
+_OUTLINE_MM = 2.5  # a jump in depth from which an outline is drawn
+_MOST_STEPS = 400  # samples along the longest edge of a face
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,13 +30,13 @@ class Picture:
         0 to 1; white where there is nothing.
     depth : ndarray, shape (H, W)
         mm towards the viewer; -inf where there is nothing.
-    px : float
-        Size of a pixel in mm.
+    px_mm : float
+        Size of a pixel.
     """
 
     rgb: NDArray[np.float32]
     depth: NDArray[np.float32]
-    px: float
+    px_mm: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,82 +68,41 @@ def view_axes(towards: ArrayLike) -> NDArray[np.float64]:
     ndarray, shape (3, 3)
         Rows: unit vectors to the right, down and towards the viewer. The head's top is up; seen from right above,
         the face is up.
+
+    Examples
+    --------
+    >>> (view_axes((0, -1, 0)) + 0.0).tolist()  # from the front: the patient's left is to the right
+    [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, -1.0, 0.0]]
     """
     d = np.asarray(towards, float)
     d = d / np.linalg.norm(d)
-    up = np.array([0.0, 0.0, 1.0]) if abs(d[2]) < 0.95 else np.array([0.0, -1.0, 0.0])
-    right = np.cross(up, d)
+    right = np.cross(up_in_view(d), d)
     right /= np.linalg.norm(right)
     return np.array([right, np.cross(right, d), d])
 
 
-def skull_surface(bone: Volume, floor: float = -np.inf) -> Mesh:
-    """Coarse, smooth surface of the bone above a height, for surroundings in pictures (never for measures).
+def up_in_view(towards: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The direction that is up in a picture: the top of the head; from right above or below, the face.
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask.
-    floor : float
-        World z in mm below which bone is left out: the face does not belong in a picture of the vault.
+    towards : ndarray, shape (3,)
+        Unit vector from the head to the viewer, LPS.
 
     Returns
     -------
-    Mesh
-        Empty where there is no bone.
+    ndarray, shape (3,)
+        Unit vector, LPS.
+
+    Examples
+    --------
+    >>> up_in_view(np.array([0.0, 0.0, 1.0])).tolist()
+    [0.0, -1.0, 0.0]
     """
-    part = _above(bone, floor)
-    if not part.voxels.any():
-        return Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp))
-    field = _field(part)
-    padded = np.pad(field.voxels, 1, constant_values=-1)
-    vertices, faces, _, _ = marching_cubes(padded, 0.0, method="lorensen")
-    mesh = Mesh(field.to_world(vertices - 1), faces.astype(np.intp))
-    return mesh if mesh.volume > 0 else Mesh(mesh.vertices, mesh.faces[:, ::-1].copy())
+    return np.array([0.0, 0.0, 1.0]) if abs(towards[2]) < 0.95 else np.array([0.0, -1.0, 0.0])
 
 
-def _above(bone: Volume, floor: float) -> Volume:
-    """The box of the bone, cut off at a height; planes of the package's volumes rise to the top of the head."""
-    box = ndimage.find_objects(bone.voxels.view(np.uint8))
-    if not box:
-        return bone
-    planes, rows, cols = box[0]
-    middle = [(s.start + s.stop) / 2 for s in (rows, cols)]
-    heights = bone.to_world([[k, *middle] for k in range(planes.start, planes.stop)])[:, 2]
-    low = planes.start + int(np.count_nonzero(heights < floor))
-    return bone.crop((slice(low, planes.stop), rows, cols))
-
-
-def _field(part: Volume) -> Volume:
-    """Smooth field on voxels of about 1.3 mm, positive in bone: slice outlines are joined by signed distances."""
-    block = np.maximum(1, np.rint(_COARSE / part.spacing)).astype(int)
-    padded = np.pad(part.voxels, [(0, int(-n % b)) for n, b in zip(part.shape, block, strict=True)])
-    p, r, c = (n // b for n, b in zip(padded.shape, block, strict=True))
-    share = padded.reshape(p, block[0], r, block[1], c, block[2]).mean(axis=(1, 3, 5), dtype=np.float32)
-    affine = part.affine.copy()
-    affine[:3, 3] = part.to_world((block - 1) / 2)
-    affine[:3, :3] *= block
-    split = max(1, round(float(np.linalg.norm(affine[:3, 0])) / _COARSE))
-    field = share - np.float32(0.4)
-    if split > 1:
-        field = ndimage.zoom(_plane_distances(share > 0.4), (((p - 1) * split + 1) / p, 1, 1), order=1)
-        affine[:3, 0] /= split
-    sigma = (0.7, 0.7, 0.7) if split == 1 else (0.8 * split, 1.3, 1.3)
-    return Volume(ndimage.gaussian_filter(field, sigma), affine)
-
-
-def _plane_distances(inside: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Signed distance to the outline within each plane, px, positive inside, cut off at 8 px."""
-    far = np.float32(8)
-    out = np.empty(inside.shape, np.float32)
-    for k, plane in enumerate(inside):
-        out[k] = ndimage.distance_transform_edt(plane) if plane.any() else 0
-        out[k] -= ndimage.distance_transform_edt(~plane) if not plane.all() else 0
-        out[k] = np.clip(out[k] if plane.any() else -far, -far, far)
-    return out
-
-
-def render(solids: Sequence[Solid], towards: ArrayLike, *, px: float = 0.5, shaded: bool = True) -> Picture:
+def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, shaded: bool = True) -> Picture:
     """Draw solids with a depth buffer and light from the upper left.
 
     Parameters
@@ -153,24 +110,34 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px: float = 0.5, shad
     solids : sequence of Solid
     towards : array_like, shape (3,)
         From the head to the viewer, LPS.
-    px : float
-        Size of a pixel, mm.
+    px_mm : float
+        Size of a pixel.
     shaded : bool
-        False keeps the colours as they are, where they stand for numbers.
+        False keeps the colours as they are, where they mean numbers.
 
     Returns
     -------
     Picture
+
+    Examples
+    --------
+    >>> square = Mesh(np.array([[0.0, 0, 0], [10, 0, 0], [0, 0, 10], [10, 0, 10]]), np.array([[0, 1, 2], [1, 3, 2]]))
+    >>> picture = render([Solid(square, np.array([1.0, 0, 0]))], (0, -1, 0), px_mm=1.0, shaded=False)
+    >>> picture.rgb.shape, picture.rgb[0, 0].tolist(), picture.rgb[6, 6].tolist()
+    ((12, 12, 3), [1.0, 1.0, 1.0], [1.0, 0.0, 0.0])
     """
+    # all solids in the frame of the view: right, down, towards the viewer
     axes = view_axes(towards)
     vertices = np.concatenate([s.mesh.vertices for s in solids]) @ axes.T
     starts = np.cumsum([0, *[len(s.mesh.vertices) for s in solids]])
     faces = np.concatenate([s.mesh.faces + at for s, at in zip(solids, starts[:-1], strict=True)])
     colours = np.concatenate([np.broadcast_to(s.colours, s.mesh.vertices.shape) for s in solids])
-    low = vertices[:, :2].min(axis=0) - _MARGIN
-    width, height = np.ceil((vertices[:, :2].max(axis=0) + _MARGIN - low) / px).astype(int)
-    at = np.column_stack([(vertices[:, :2] - low) / px, vertices[:, 2]])
+    # from mm to pixels
+    low = vertices[:, :2].min(axis=0) - _MARGIN_MM
+    width, height = np.ceil((vertices[:, :2].max(axis=0) + _MARGIN_MM - low) / px_mm).astype(int)
+    at = np.column_stack([(vertices[:, :2] - low) / px_mm, vertices[:, 2]])
     face, weight, depth = _scan(at, faces, int(height), int(width))
+    # colours and normals between the corners of the face that is seen
     hit = face >= 0
     corners, share = faces[face[hit]], weight[hit][..., None]
     colour = (share * colours[corners]).sum(axis=1)
@@ -179,7 +146,7 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px: float = 0.5, shad
         colour = _lit(colour, (share * normals[corners]).sum(axis=1))
     rgb = np.ones((height, width, 3), np.float32)
     rgb[hit] = colour
-    return Picture(_outlined(rgb, depth) if shaded else rgb, depth, px)
+    return Picture(_outlined(rgb, depth) if shaded else rgb, depth, px_mm)
 
 
 def _scan(
@@ -189,11 +156,13 @@ def _scan(
 
     Each face that looks at the viewer is sampled at least once per pixel; the nearest sample of a pixel wins.
     """
+    # faces turned away are left out; the others get steps of less than a pixel along their longest edge
     corners = at[faces].astype(np.float32)
     edge1, edge2 = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
     front = edge1[:, 0] * edge2[:, 1] - edge1[:, 1] * edge2[:, 0] < 0  # rows run down
     longest = np.sqrt(np.maximum(np.maximum((edge1**2).sum(1), (edge2**2).sum(1)), ((edge1 - edge2) ** 2).sum(1)))
-    n_steps = np.where(front, np.clip(np.ceil(1.2 * longest), 1, 400).astype(int), 0)
+    n_steps = np.where(front, np.clip(np.ceil(1.2 * longest), 1, _MOST_STEPS).astype(int), 0)
+    # faces with equally many steps are sampled at once
     face = np.full(height * width, -1, np.int32)
     weight = np.zeros((height * width, 3), np.float32)
     depth = np.full(height * width, -np.inf, np.float32)
@@ -220,6 +189,7 @@ def _shares(n: int) -> NDArray[np.float32]:
 
 def _lit(colour: NDArray, normal: NDArray) -> NDArray:
     """Lambert shading in the frame of the view (right, down, towards the viewer): a key light and a head light."""
+    # light = ambient + key light + head light, each by the cosine of its angle with the normal
     key = np.array([-0.45, -0.6, 0.66])
     unit = normal / np.linalg.norm(normal, axis=1, keepdims=True).clip(1e-12)
     light = 0.28 + 0.5 * np.clip(unit @ key, 0, 1) + 0.3 * np.clip(unit[:, 2], 0, 1)
@@ -229,6 +199,6 @@ def _lit(colour: NDArray, normal: NDArray) -> NDArray:
 def _outlined(rgb: NDArray[np.float32], depth: NDArray[np.float32]) -> NDArray[np.float32]:
     """Darken pixels that lie behind a nearer one: rims and silhouettes."""
     seen = np.where(np.isfinite(depth), depth, np.float32(-1e4))
-    behind = np.clip((ndimage.maximum_filter(seen, 3) - seen - _OUTLINE) / 4, 0, 1)
+    behind = np.clip((ndimage.maximum_filter(seen, 3) - seen - _OUTLINE_MM) / 4, 0, 1)
     behind[~np.isfinite(depth)] = np.clip(behind[~np.isfinite(depth)], 0, 0.75)
     return (rgb * (1 - 0.6 * behind[..., None])).astype(np.float32)

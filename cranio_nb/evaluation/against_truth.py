@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 
 from ..errors import InputRefused
 from ..geometry import face_sides
+from ..geometry.closest_point import nearest
 from ..mesh import Mesh
-from ..opening import Opening
 from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
 from ..stages import surface_reconstruction
 from ..volume import Volume
-from . import scores
-from .scores import Score
+from .mesh_distances import distance_stats, in_voxels
+from .scores import Score, score
 
 SIDES = {"outer": OUTER, "inner": INNER}
 """The sides that are measured, by name."""
@@ -46,7 +46,7 @@ class TruthCheck:
     table3: dict[str, DistanceStats]
 
 
-def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Opening) -> TruthCheck:
+def check_truth(made: Prosthesis, truth: Volume, bone: Volume, head_centre: NDArray[np.float64]) -> TruthCheck:
     """Measure a design against the missing bone.
 
     Parameters
@@ -57,40 +57,95 @@ def check_truth(made: Prosthesis, truth: Volume, bone: Volume, largest: Opening)
         Bool mask of the missing bone on the grid of `bone`.
     bone : Volume
         The skull with the hole.
-    largest : Opening
-        Its head centre tells outside from inside.
+    head_centre : ndarray, shape (3,)
+        World mm of a point inside the cranial cavity; it tells outside from inside.
+
+    Returns
+    -------
+    TruthCheck
+
+    Raises
+    ------
+    InputRefused
+        ``NoPatch`` for a design without voxels; ``GridMismatch``.
     """
-    return against(made, true_prosthesis(truth, bone, largest), bone)
+    return measure_against(made, true_prosthesis(truth, bone, head_centre), bone)
 
 
-def true_prosthesis(truth: Volume, bone: Volume, largest: Opening) -> Prosthesis:
-    """The missing bone as a prosthesis: its mesh with sides. Parameters as in `check_truth`."""
+def true_prosthesis(truth: Volume, bone: Volume, head_centre: NDArray[np.float64]) -> Prosthesis:
+    """The missing bone as a prosthesis: its mesh with sides.
+
+    Parameters
+    ----------
+    truth, bone, head_centre
+        As for `check_truth`.
+
+    Returns
+    -------
+    Prosthesis
+    """
     mesh = surface_reconstruction.extract_surface(truth)
-    return Prosthesis(mesh, face_sides.label_faces(mesh, bone, largest.head_centre), truth, "truth")
+    return Prosthesis(mesh, face_sides.label_faces(mesh, bone, head_centre), truth, "truth")
 
 
-def against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCheck:
-    """Measure a design against another prosthesis with a patch on the same grid; see `check_truth`."""
+def measure_against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCheck:
+    """Measure a design against another prosthesis.
+
+    Parameters
+    ----------
+    made, true : Prosthesis
+        With patches on one grid.
+    bone : Volume
+        The skull with the hole.
+
+    Returns
+    -------
+    TruthCheck
+
+    Raises
+    ------
+    InputRefused
+        ``NoPatch`` for a design without voxels; ``GridMismatch``.
+    """
     if made.patch is None or true.patch is None:
         raise InputRefused("NoPatch", f"The method {made.method} makes no voxels to compare with a mask.")
-    score = scores.score(made.patch, true.patch, bone)
-    return TruthCheck(true, score, side_distances(made, true), table3(made, true, bone))
+    found = score(made.patch, true.patch, bone)
+    return TruthCheck(true, found, side_distances(made, true), table3(made, true, bone))
 
 
 def side_distances(made: Prosthesis, true: Prosthesis) -> dict[str, NDArray[np.float64]]:
-    """Side ("outer", "inner") -> distance in mm of each of its nodes to the true side, shape (nodes,).
+    """Distance of each node of a side to the true side.
 
-    Only sides that both have.
+    Parameters
+    ----------
+    made, true : Prosthesis
+
+    Returns
+    -------
+    dict of str to ndarray, shape (nodes,)
+        "outer" and "inner", as far as both have them; mm.
     """
-    return {name: scores.surface_distance(own.vertices, other) for name, own, other in _both_sides(made, true)}
+    return {name: nearest(own.vertices, other).distance for name, own, other in _both_sides(made, true)}
 
 
 def table3(made: Prosthesis, true: Prosthesis, bone: Volume) -> dict[str, DistanceStats]:
-    """Side -> a row of the paper's Table 3, in voxels of the bone's grid."""
+    """Rows of the paper's Table 3.
+
+    Parameters
+    ----------
+    made, true : Prosthesis
+    bone : Volume
+        Its grid counts the voxels.
+
+    Returns
+    -------
+    dict of str to DistanceStats
+        "outer" and "inner", as far as both have them; voxels.
+    """
     found = {}
     for name, own, other in _both_sides(made, true):
-        nodes = scores.in_voxels(own, bone).vertices
-        found[name] = scores.distance_stats(scores.surface_distance(nodes, scores.in_voxels(other, bone)))
+        nodes = in_voxels(own, bone).vertices
+        found[name] = distance_stats(nearest(nodes, in_voxels(other, bone)).distance)
     return found
 
 

@@ -1,4 +1,4 @@
-"""A design's slices, openings and distances -> rows of numbers: this run's Tables 1 to 3 and the paper's own.
+"""A design's slices and distances -> rows of numbers: this run's Tables 1 to 3 and the paper's own.
 
 Frames: angles in degrees, lengths in mm unless a name says voxels.
 """
@@ -7,12 +7,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..opening import Opening
 from ..prosthesis import DistanceStats
 
 PAPER_BALLOONS = {
@@ -30,70 +28,6 @@ PAPER_DISTANCES = {
 
 STATUSES = ("balloon", "hull", "carried", "skipped")
 """How a slice was filled: by its own balloons, by the convex hull, from its neighbours, not at all."""
-
-
-@dataclass(frozen=True)
-class OpeningSize:
-    """An opening in words and numbers.
-
-    Parameters
-    ----------
-    planes : tuple of int
-        First and last plane, both of them in it.
-    length, width : float
-        Long and short extent across the direction of the opening, mm.
-    centre : tuple of float
-        World mm, LPS.
-    direction : tuple of float
-        Unit vector from the head's centre to it, LPS.
-    lowest : float
-        World z of its lowest place, mm.
-    place : str
-        Where it lies on the head, e.g. "left, top".
-    """
-
-    planes: tuple[int, int]
-    length: float
-    width: float
-    centre: tuple[float, float, float]
-    direction: tuple[float, float, float]
-    lowest: float
-    place: str
-
-
-def measure_opening(opening: Opening) -> OpeningSize:
-    """Measure an opening by its coarse sheet."""
-    index = np.argwhere(opening.sheet.voxels)
-    points = opening.sheet.to_world(index)
-    centre = points.mean(axis=0)
-    out = (centre - opening.head_centre) / np.linalg.norm(centre - opening.head_centre)
-    flat = (points - centre)[::3]
-    flat = flat - np.outer(flat @ out, out)
-    axes = np.linalg.eigh(flat.T @ flat)[1][:, :0:-1].T
-    length, width = (float(np.ptp(np.quantile(flat @ axis, [0.005, 0.995]))) for axis in axes)
-    return OpeningSize(
-        (int(index[0, 0]), int(index[-1, 0])),
-        length,
-        width,
-        tuple(centre.tolist()),
-        tuple(out.tolist()),
-        float(points[:, 2].min()),
-        place(out),
-    )
-
-
-def place(direction: Sequence[float] | np.ndarray) -> str:
-    """Words for a direction from the head's centre (LPS).
-
-    Examples
-    --------
-    >>> place([0.8, -0.5, 0.1])
-    'left, front'
-    """
-    names = (("right", "left"), ("front", "back"), ("base", "top"))
-    x, y, z = direction
-    words = [pair[int(v > 0)] for pair, v in zip(names, (x, y, z), strict=True) if abs(v) > 0.38]
-    return ", ".join(words)
 
 
 def balloon_ranges(slices: Sequence[dict[str, Any]]) -> dict[str, dict[str, tuple[float, float]]]:
@@ -120,17 +54,42 @@ def balloon_ranges(slices: Sequence[dict[str, Any]]) -> dict[str, dict[str, tupl
 
 
 def count_statuses(slices: Sequence[dict[str, Any]]) -> dict[str, int]:
-    """Number of slices of each of the `STATUSES`."""
+    """Number of slices of each of the `STATUSES`.
+
+    Parameters
+    ----------
+    slices : sequence of dict
+        `Prosthesis.record["slices"]`.
+
+    Returns
+    -------
+    dict of str to int
+
+    Examples
+    --------
+    >>> count_statuses([{"status": "hull"}, {"status": "hull"}])
+    {'balloon': 0, 'hull': 2, 'carried': 0, 'skipped': 0}
+    """
     found = Counter(s["status"] for s in slices)
     return {status: found[status] for status in STATUSES}
 
 
-def not_converged(slices: Sequence[dict[str, Any]]) -> int:
-    """Number of slices with a balloon that was stopped before it came to rest."""
+def count_not_converged(slices: Sequence[dict[str, Any]]) -> int:
+    """Number of slices with a balloon that was stopped before it came to rest.
+
+    Parameters
+    ----------
+    slices : sequence of dict
+        `Prosthesis.record["slices"]`.
+
+    Returns
+    -------
+    int
+    """
     return sum(not all(s["converged"]) for s in slices if s["status"] == "balloon")
 
 
-def telling_slices(statuses: Sequence[str], n: int) -> list[int]:
+def pick_slices(statuses: Sequence[str], n: int) -> list[int]:
     """Which slices to show: evenly spread, with one of each kind other than "balloon" among them.
 
     Parameters
@@ -144,7 +103,13 @@ def telling_slices(statuses: Sequence[str], n: int) -> list[int]:
     -------
     list of int
         At most `n` indices, rising.
+
+    Examples
+    --------
+    >>> pick_slices(["balloon"] * 4 + ["hull"] + ["balloon"] * 4, 3)
+    [2, 4, 7]
     """
+    # the middle one of each other kind, then balloons at even steps
     special = []
     for status in STATUSES[1:]:
         at = [i for i, s in enumerate(statuses) if s == status]

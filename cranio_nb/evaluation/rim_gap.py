@@ -56,24 +56,40 @@ def rim_gap(rim: Mesh, bone: Volume) -> GapStats:
 
 
 def distance_to_voxels(points: NDArray[np.float64], mask: Volume) -> NDArray[np.float64]:
-    """Distance in mm from world points, shape (N, 3), to the boxes of a mask's voxels, shape (N,); 0 inside.
+    """Distance from points to the boxes of a mask's voxels.
 
-    The nearest box is looked for among the eight surface voxels whose centres are nearest.
+    Parameters
+    ----------
+    points : ndarray, shape (N, 3)
+        World mm.
+    mask : Volume
+        Bool.
+
+    Returns
+    -------
+    ndarray, shape (N,)
+        mm; 0 inside a true voxel. The nearest box is looked for among the eight surface voxels whose centres are
+        nearest.
+
+    Raises
+    ------
+    InputRefused
+        ``NoBone`` when the mask is empty.
+
+    Examples
+    --------
+    >>> mask = Volume(np.ones((1, 1, 1), bool), np.eye(4))
+    >>> distance_to_voxels(np.array([[0.2, 0.0, 0.0], [3.0, 0.0, 0.0]]), mask)
+    array([0. , 2.5])
     """
     surface = np.argwhere(mask.voxels & ~ndimage.binary_erosion(mask.voxels))
     if not len(surface):
         raise InputRefused("NoBone", "The bone mask is empty; a gap needs bone.")
+    # the boxes of the nearest surface voxels reach half a voxel to each side
     at = mask.to_voxel(points)
     _, near = cKDTree(mask.to_world(surface)).query(points, k=np.arange(1, 1 + min(8, len(surface))))
     step = at[:, None] - surface[near]
     outside = step - np.clip(step, -0.5, 0.5)
-    gap = np.linalg.norm(outside @ mask.affine[:3, :3].T, axis=2).min(axis=1)
-    gap[_holds(mask, at)] = 0
+    gap = np.linalg.norm(outside @ mask.edges, axis=2).min(axis=1)
+    gap[mask.at_index(at, outside=False)] = 0
     return gap
-
-
-def _holds(mask: Volume, at: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Whether fractional voxel indices, shape (N, 3), fall into a true voxel."""
-    index = np.rint(at).astype(int)
-    known = np.flatnonzero(((index >= 0) & (index < mask.shape)).all(axis=1))
-    return np.isin(np.arange(len(at)), known[mask.voxels[tuple(index[known].T)]])

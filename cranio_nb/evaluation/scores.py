@@ -1,8 +1,8 @@
-"""A patch and the truth -> how far apart they are: overlap of voxels, distance of surfaces.
+"""A patch and the truth as masks -> how far apart they are: overlap of voxels, distance of surface voxels.
 
-Frame: masks are `Volume`s on one grid, meshes stand in world mm; distances are in mm unless both meshes were taken
-`in_voxels` first. An empty mask is a possible answer of a method, so it is measured, not refused: two empty masks
-agree (Dice 1, distances 0, ratio 1); an empty mask against a filled one does not (Dice 0, distances inf).
+Frame: masks are `Volume`s on one grid; distances in mm. An empty mask is a possible answer of a method, so it is
+measured, not refused: two empty masks agree (Dice 1, distances 0, ratio 1); an empty mask against a filled one does
+not (Dice 0, distances inf).
 """
 
 from __future__ import annotations
@@ -15,13 +15,11 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..errors import InputRefused
-from ..geometry.closest_point import nearest, pseudonormals
-from ..mesh import Mesh
-from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
-from ..volume import Volume, same_grid
+from ..grid import Box, box_around
+from ..volume import Volume, check_same_grid
 
-BORDER = 10.0
-"""Reach of the border Dice around the bone of the defective skull, mm (AutoImplant challenge 2021)."""
+BORDER_MM = 10.0
+"""Reach of the border Dice around the bone of the defective skull (AutoImplant challenge 2021)."""
 
 
 @dataclass(frozen=True)
@@ -31,7 +29,7 @@ class Score:
     Parameters
     ----------
     dice, border_dice : float
-        Overlap, 0 to 1; over all voxels, and over those within `BORDER` mm of bone.
+        Overlap, 0 to 1; over all voxels, and over those within `BORDER_MM` of bone.
     hd95, assd, rmse : float
         95th percentile, mean and root mean square of the surface distances both ways, mm.
     volume_ratio : float
@@ -59,11 +57,28 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
     skull : Volume
         Bool mask (P, R, C) of the skull with the hole.
 
+    Returns
+    -------
+    Score
+
     Raises
     ------
     InputRefused
         If the three do not share one grid (GridMismatch), or the skull has no bone (NoBone).
+
+    Examples
+    --------
+    >>> grid = Volume(np.zeros((4, 9, 9), bool), np.eye(4))
+    >>> truth, patch, skull = grid.voxels.copy(), grid.voxels.copy(), grid.voxels.copy()
+    >>> truth[:, 2:8, :], patch[:, 2:6, :], skull[:, 0, :] = True, True, True
+    >>> found = score(grid.with_voxels(patch), grid.with_voxels(truth), grid.with_voxels(skull))
+    >>> round(found.dice, 9), round(found.volume_ratio, 3), found.overlap
+    (0.8, 0.667, 0)
     """
+    # one grid for all three: files round theirs, and a score must not depend on where a mask was stored
+    check_same_grid(patch, skull, "patch and skull")
+    check_same_grid(truth, skull, "truth and skull")
+    patch, truth = skull.with_voxels(patch.voxels), skull.with_voxels(truth.voxels)
     distances = surface_distances(patch, truth)
     return Score(
         dice=dice(patch, truth),
@@ -77,40 +92,74 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
 
 
 def dice(patch: Volume, truth: Volume) -> float:
-    """Dice similarity, 2 |A and B| / (|A| + |B|), 0 to 1; 1 for two empty masks."""
-    _check_grid(patch, truth)
+    """Dice similarity, 2 |A and B| / (|A| + |B|).
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        0 to 1; 1 for two empty masks.
+
+    Examples
+    --------
+    >>> a, b = (Volume(np.arange(4).reshape(1, 1, 4) < n, np.eye(4)) for n in (1, 3))
+    >>> dice(a, b)
+    0.5
+    """
+    check_same_grid(patch, truth, "patch and truth")
     return _dice(patch.voxels, truth.voxels)
 
 
-def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach: float = BORDER) -> float:
-    """Dice over the voxels within `reach` mm of any bone of the defective skull.
+def border_dice(patch: Volume, truth: Volume, skull: Volume, *, reach_mm: float = BORDER_MM) -> float:
+    """Dice over the voxels within `reach_mm` of any bone of the defective skull.
 
     Parameters
     ----------
     patch, truth, skull : Volume
         Bool masks (P, R, C) on one grid.
-    reach : float
-        mm between voxel centres.
+    reach_mm : float
+        Between voxel centres.
+
+    Returns
+    -------
+    float
+        0 to 1.
 
     Raises
     ------
     InputRefused
         GridMismatch, or NoBone if the skull is empty: then there is no border.
     """
-    _check_grid(patch, truth)
-    _check_grid(patch, skull)
+    check_same_grid(patch, truth, "patch and truth")
+    check_same_grid(patch, skull, "patch and skull")
     if not skull.voxels.any():
         raise InputRefused("NoBone", "The skull mask is empty; the border Dice needs bone.")
+    # only voxels of either mask count
     box = _box(patch.voxels, truth.voxels)
     a, b = patch.voxels[box], truth.voxels[box]
-    near = _near_bone(skull, np.argwhere(a | b) + [s.start for s in box], reach)
+    near = _near_bone(skull, np.argwhere(a | b) + [s.start for s in box], reach_mm)
     a, b = a[a | b], b[a | b]
     return _dice(a & near, b & near)
 
 
 def volume_ratio(patch: Volume, truth: Volume) -> float:
-    """Volume of the patch over the volume of the truth; 1 for two empty masks, inf where only the truth is empty."""
-    _check_grid(patch, truth)
+    """Volume of the patch over the volume of the truth.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        1 for two empty masks, inf where only the truth is empty.
+    """
+    check_same_grid(patch, truth, "patch and truth")
     found, wanted = int(np.count_nonzero(patch.voxels)), int(np.count_nonzero(truth.voxels))
     if wanted == 0:
         return 1.0 if found == 0 else float("inf")
@@ -118,24 +167,67 @@ def volume_ratio(patch: Volume, truth: Volume) -> float:
 
 
 def overlap(patch: Volume, skull: Volume) -> int:
-    """Number of voxels that are both patch and bone."""
-    _check_grid(patch, skull)
+    """Number of voxels that are both patch and bone.
+
+    Parameters
+    ----------
+    patch, skull : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    int
+    """
+    check_same_grid(patch, skull, "patch and skull")
     box = _box(patch.voxels)
     return int(np.count_nonzero(patch.voxels[box] & skull.voxels[box]))
 
 
 def hd95(patch: Volume, truth: Volume) -> float:
-    """95th percentile of the `surface_distances`, mm: the Hausdorff distance without its outliers."""
+    """95th percentile of the `surface_distances`: the Hausdorff distance without its outliers.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _percentile95(surface_distances(patch, truth))
 
 
 def assd(patch: Volume, truth: Volume) -> float:
-    """Mean of the `surface_distances`, mm: average symmetric surface distance."""
+    """Mean of the `surface_distances`: average symmetric surface distance.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _mean(surface_distances(patch, truth))
 
 
 def rmse(patch: Volume, truth: Volume) -> float:
-    """Root mean square of the `surface_distances`, mm."""
+    """Root mean square of the `surface_distances`.
+
+    Parameters
+    ----------
+    patch, truth : Volume
+        Bool masks (P, R, C) on one grid.
+
+    Returns
+    -------
+    float
+        mm.
+    """
     return _root_mean_square(surface_distances(patch, truth))
 
 
@@ -154,7 +246,7 @@ def surface_distances(patch: Volume, truth: Volume) -> NDArray[np.float64]:
         mm, first from the patch's surface to the truth's, then back. No values if both are empty; inf for every
         surface voxel if one is.
     """
-    _check_grid(patch, truth)
+    check_same_grid(patch, truth, "patch and truth")
     box = _box(patch.voxels, truth.voxels)
     a, b = (v.crop(box).to_world(np.argwhere(_surface(v.voxels[box]))) for v in (patch, truth))
     if not len(a) or not len(b):
@@ -162,78 +254,15 @@ def surface_distances(patch: Volume, truth: Volume) -> NDArray[np.float64]:
     return np.concatenate([cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]])
 
 
-def surface_distance(nodes: NDArray[np.float64], other: Mesh) -> NDArray[np.float64]:
-    """Distance from each node to the nearest place on another surface, one way, as in the paper's Table 3.
-
-    Parameters
-    ----------
-    nodes : ndarray, shape (N, 3)
-        Nodes of the surface to be judged: the top or the inner side of a prosthesis.
-    other : Mesh
-        The surface taken as the truth, open or closed.
-
-    Returns
-    -------
-    ndarray, shape (N,)
-        Unsigned, exact (to triangles, not to nodes); mm, or voxels where both were taken `in_voxels`.
-    """
-    return nearest(nodes, other).distance
-
-
-def signed_distance(nodes: NDArray[np.float64], other: Mesh) -> NDArray[np.float64]:
-    """`surface_distance` with a sign: positive where the node lies on the outer side of the other surface.
-
-    For an outer side: positive bulges, negative sinks in. Shape (N,).
-    """
-    found = nearest(nodes, other)
-    side = np.einsum("nd,nd->n", nodes - found.places(other), pseudonormals(other, found))
-    return np.copysign(found.distance, side)
-
-
-def distance_stats(distances: NDArray[np.float64]) -> DistanceStats:
-    """A row of Table 3 from distances of shape (N,), N > 0."""
-    if not len(distances):
-        raise InputRefused("EmptyMesh", "There are no distances to sum up; the surface has no nodes.")
-    return DistanceStats(
-        float(distances.min()), float(distances.max()), float(distances.mean()), float(distances.std())
-    )
-
-
-def in_voxels(mesh: Mesh, grid: Volume) -> Mesh:
-    """The mesh in the (plane, row, col) frame of a grid, where distances count voxels as in the paper."""
-    return Mesh(grid.to_voxel(mesh.vertices), mesh.faces)
-
-
-def thickness(prosthesis: Prosthesis) -> NDArray[np.float64]:
-    """Distance in mm from each node of the outer side to the inner side, shape (nodes of the outer surface,)."""
-    return surface_distance(prosthesis.surface(OUTER).vertices, prosthesis.surface(INNER))
-
-
-def thickness_rmse(prosthesis: Prosthesis, truth: Prosthesis) -> float:
-    """Root mean square difference of thickness in mm, at each outer node and the true outer node nearest to it."""
-    return thickness_error(prosthesis, thickness(prosthesis), truth, thickness(truth))
-
-
-def thickness_error(
-    prosthesis: Prosthesis, values: NDArray[np.float64], truth: Prosthesis, true_values: NDArray[np.float64]
-) -> float:
-    """`thickness_rmse` from the `thickness` of both, where that is known already."""
-    nodes, true_nodes = prosthesis.surface(OUTER).vertices, truth.surface(OUTER).vertices
-    if not len(nodes) or not len(true_nodes):
-        raise InputRefused("EmptyMesh", "A prosthesis without an outer side has no thickness.")
-    _, twin = cKDTree(true_nodes).query(nodes)
-    return _root_mean_square(values - true_values[twin])
-
-
 def _near_bone(skull: Volume, index: NDArray[np.intp], reach: float) -> NDArray[np.bool_]:
     """Whether each voxel of shape (N, 3) has its centre within `reach` mm of the centre of a bone voxel."""
     near = np.zeros(len(index), bool)
     if not len(index):
         return near
-    margin = np.ceil(reach * np.linalg.norm(np.linalg.inv(skull.affine[:3, :3]), axis=1)).astype(int) + 1
-    lo, hi = np.maximum(index.min(axis=0) - margin, 0), index.max(axis=0) + margin + 1
-    box = tuple(slice(a, b) for a, b in zip(lo, hi, strict=True))
-    bone = np.argwhere(_surface(skull.voxels[box])) + lo
+    # only bone in reach of any of the voxels counts
+    margin = np.ceil(reach * np.linalg.norm(skull.steps(np.eye(3)), axis=0)).astype(int) + 1
+    box = box_around(index, skull.shape, margin)
+    bone = np.argwhere(_surface(skull.voxels[box])) + [side.start for side in box]
     if not len(bone):
         return near
     near = _within(skull.to_world(index), skull.to_world(bone), reach)
@@ -245,11 +274,13 @@ def _within(points: NDArray, others: NDArray, reach: float) -> NDArray[np.bool_]
 
     A thinned set of the others settles most points: all of them lie within a cell's diagonal of it.
     """
+    # one point of each cell
     cell = reach / 5
     _, some = np.unique(np.floor(others / cell).astype(int), axis=0, return_index=True)
     slack = cell * np.sqrt(3)
     far = cKDTree(others[some]).query(points, distance_upper_bound=reach + slack)[0]
     within = far <= reach
+    # the rest is asked exactly
     unsure = np.flatnonzero(~within & np.isfinite(far))
     bound = reach * (1 + 1e-9) + 1e-9  # the tree's bound is exclusive
     within[unsure] = np.isfinite(cKDTree(others).query(points[unsure], distance_upper_bound=bound)[0])
@@ -261,14 +292,9 @@ def _surface(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return mask & ~ndimage.binary_erosion(mask)
 
 
-def _box(*masks: NDArray[np.bool_]) -> tuple[slice, slice, slice]:
+def _box(*masks: NDArray[np.bool_]) -> Box:
     """Smallest index box that holds all true voxels of the masks; empty if there are none."""
-    sides = []
-    for axis in range(3):
-        across = tuple(a for a in range(3) if a != axis)
-        hit = np.flatnonzero(np.any([m.any(axis=across) for m in masks], axis=0))
-        sides.append(slice(int(hit[0]), int(hit[-1]) + 1) if len(hit) else slice(0, 0))
-    return sides[0], sides[1], sides[2]
+    return Volume(np.logical_or.reduce(masks), np.eye(4)).box()
 
 
 def _dice(a: NDArray[np.bool_], b: NDArray[np.bool_]) -> float:
@@ -288,12 +314,3 @@ def _mean(distances: NDArray[np.float64]) -> float:
 
 def _root_mean_square(distances: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.square(distances).mean())) if len(distances) else 0.0
-
-
-def _check_grid(a: Volume, b: Volume) -> None:
-    if not same_grid(a, b):
-        raise InputRefused(
-            "GridMismatch",
-            f"The masks stand on different grids, shapes {a.shape} and {b.shape}.",
-            "Bring them onto one grid first.",
-        )

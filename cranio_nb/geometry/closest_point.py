@@ -38,7 +38,17 @@ class Nearest:
     weights: NDArray[np.float64]
 
     def places(self, mesh: Mesh) -> NDArray[np.float64]:
-        """The places themselves, shape (N, 3)."""
+        """The places themselves.
+
+        Parameters
+        ----------
+        mesh : Mesh
+            That was searched.
+
+        Returns
+        -------
+        ndarray, shape (N, 3)
+        """
         return np.einsum("nk,nkd->nd", self.weights, mesh.corners[self.face])
 
 
@@ -60,7 +70,13 @@ def nearest(points: NDArray[np.float64], mesh: Mesh) -> Nearest:
     Raises
     ------
     InputRefused
-        If the mesh has no faces.
+        ``EmptyMesh`` if the mesh has no faces.
+
+    Examples
+    --------
+    >>> triangle = Mesh(np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0]]), np.array([[0, 1, 2]]))
+    >>> nearest(np.array([[1.0, 1, 2], [-3, 0, 4]]), triangle).distance
+    array([2., 5.])
     """
     if not len(mesh.faces):
         raise InputRefused("EmptyMesh", "The mesh has no faces; a distance needs a surface.")
@@ -70,27 +86,21 @@ def nearest(points: NDArray[np.float64], mesh: Mesh) -> Nearest:
     # A few long faces would make every search wide: faces are searched in classes of like size.
     size_class = np.floor(np.log2(np.maximum(reach, np.finfo(float).tiny)))
     for size in np.unique(size_class):
-        _improve(best, points, mesh, np.flatnonzero(size_class == size), reach)
+        faces = np.flatnonzero(size_class == size)
+        tree, radius = cKDTree(mesh.centres[faces]), reach[faces].max()
+        # the face with the nearest centre gives a distance not to be exceeded
+        far, near = tree.query(points)
+        _take_better(best, points, mesh, np.arange(len(points)), faces[near])
+        # then all faces that could be nearer are tried
+        unsure = np.flatnonzero(far - radius < best.distance)
+        for some in np.array_split(unsure, 1 + len(unsure) // _CHUNK):
+            lists = tree.query_ball_point(points[some], best.distance[some] + radius, return_sorted=False)
+            count = np.fromiter(map(len, lists), np.intp, len(lists))
+            point = np.repeat(some, count)
+            face = faces[np.fromiter(chain.from_iterable(lists), np.intp, count.sum())]
+            hopeful = _disc_distance(points[point], mesh, face, reach) < best.distance[point]
+            _take_better(best, points, mesh, point[hopeful], face[hopeful])
     return best
-
-
-def _improve(best: Nearest, points: NDArray, mesh: Mesh, faces: NDArray[np.intp], reach: NDArray) -> None:
-    """Fill in the places that lie on these faces and are nearer than the best so far.
-
-    The face with the nearest centre gives a distance not to be exceeded; then all faces that could be nearer are tried.
-    """
-    tree, radius = cKDTree(mesh.centres[faces]), reach[faces].max()
-    far, near = tree.query(points)
-    every = np.arange(len(points))
-    _take_better(best, points, mesh, every, faces[near])
-    unsure = np.flatnonzero(far - radius < best.distance)
-    for some in np.array_split(unsure, 1 + len(unsure) // _CHUNK):
-        lists = tree.query_ball_point(points[some], best.distance[some] + radius, return_sorted=False)
-        count = np.fromiter(map(len, lists), np.intp, len(lists))
-        point = np.repeat(some, count)
-        face = faces[np.fromiter(chain.from_iterable(lists), np.intp, count.sum())]
-        hopeful = _disc_distance(points[point], mesh, face, reach) < best.distance[point]
-        _take_better(best, points, mesh, point[hopeful], face[hopeful])
 
 
 def _disc_distance(points: NDArray, mesh: Mesh, face: NDArray[np.intp], reach: NDArray) -> NDArray[np.float64]:
@@ -130,35 +140,43 @@ def origin_on_triangles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     Notes
     -----
     The foot of the perpendicular where it falls inside; else the best of the three edges.
+
+    Examples
+    --------
+    >>> origin_on_triangles(np.array([[[1.0, -1, 0], [1, 1, 0], [3, 0, 0]]]))
+    array([[0.5, 0.5, 0. ]])
     """
+    # the foot of the perpendicular, where it falls inside
     a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
     normal = np.cross(b - a, c - a)
     square = np.einsum("nd,nd->n", normal, normal)
     inside = np.stack([np.einsum("nd,nd->n", np.cross(p, q), normal) for p, q in ((b, c), (c, a), (a, b))], axis=1)
     foot = (inside >= 0).all(axis=1) & (square > 0)
     weights = np.divide(inside, inside.sum(axis=1)[:, None], out=np.zeros_like(inside), where=foot[:, None])
-    weights[~foot] = _origin_on_edges(corners[~foot])
-    return weights
 
-
-def _origin_on_edges(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Barycentric weights of the place on the three edges nearest to the origin."""
-    start, end = corners, np.roll(corners, -1, axis=1)
-    along = end - start
+    # elsewhere the nearest place of each edge, and of these the nearest
+    start = corners[~foot]
+    along = np.roll(start, -1, axis=1) - start
     square = np.einsum("nkd,nkd->nk", along, along)
     t = np.divide(-np.einsum("nkd,nkd->nk", start, along), square, out=np.zeros_like(square), where=square > 0)
     t = np.clip(t, 0, 1)
     place = start + t[..., None] * along
     edge = np.einsum("nkd,nkd->nk", place, place).argmin(axis=1)
-    row = np.arange(len(corners))
-    weights = np.zeros((len(corners), 3))
-    weights[row, edge] = 1 - t[row, edge]
-    weights[row, (edge + 1) % 3] = t[row, edge]
+    other, row = np.flatnonzero(~foot), np.arange(len(start))
+    weights[other] = 0
+    weights[other, edge] = 1 - t[row, edge]
+    weights[other, (edge + 1) % 3] = t[row, edge]
     return weights
 
 
 def pseudonormals(mesh: Mesh, found: Nearest) -> NDArray[np.float64]:
     """Normal of the mesh at each found place: of the face, the edge or the corner it lies on.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    found : Nearest
+        Places on it.
 
     Returns
     -------
@@ -168,6 +186,12 @@ def pseudonormals(mesh: Mesh, found: Nearest) -> NDArray[np.float64]:
     Notes
     -----
     Angle-weighted at corners (Baerentzen and Aanaes 2005, doi 10.1109/TVCG.2005.49); the two faces' sum at edges.
+
+    Examples
+    --------
+    >>> triangle = Mesh(np.array([[0.0, 0, 0], [4, 0, 0], [0, 4, 0]]), np.array([[0, 1, 2]]))
+    >>> pseudonormals(triangle, nearest(np.array([[1.0, 1, 2]]), triangle))
+    array([[0., 0., 1.]])
     """
     normals = mesh.normals.copy()[found.face]
     on_edge = (found.weights <= _ON_EDGE).sum(axis=1) == 1

@@ -53,11 +53,7 @@ def label_faces(mesh: Mesh, bone: Volume, head_centre: ArrayLike) -> NDArray[np.
 
 def _touches_bone(mesh: Mesh, bone: Volume) -> NDArray[np.bool_]:
     """Whether a bone voxel lies within 1.5 voxels of each face, in the direction of its normal, shape (F,)."""
-    step = mesh.normals @ np.linalg.inv(bone.affine[:3, :3]).T
+    start, step = bone.to_voxel(mesh.centres), bone.steps(mesh.normals)
     step /= np.abs(step).max(axis=1, keepdims=True).clip(1e-12)
-    touches = np.zeros(len(mesh.faces), bool)
-    for reach in (0.5, 1.0, 1.5):
-        index = np.rint(bone.to_voxel(mesh.centres) + reach * step).astype(int)
-        known = ((index >= 0) & (index < bone.shape)).all(axis=1)
-        touches[known] |= bone.voxels[tuple(index[known].T)].astype(bool)
-    return touches
+    reaches = (bone.at_index(start + reach * step, outside=False) for reach in (0.5, 1.0, 1.5))
+    return np.logical_or.reduce(list(reaches)).astype(bool)

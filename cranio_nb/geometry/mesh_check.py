@@ -22,7 +22,7 @@ _WALL_SAMPLES = 20_000
 
 @dataclass(frozen=True)
 class MeshReport:
-    """What a mesh is, seen by whoever must build it.
+    """What a mesh is, as whoever must build it asks.
 
     Parameters
     ----------
@@ -59,17 +59,32 @@ class MeshReport:
 
     @property
     def closed(self) -> bool:
-        """Every edge joins exactly two faces (edge-manifold, watertight)."""
+        """Whether every edge joins exactly two faces (edge-manifold, watertight).
+
+        Returns
+        -------
+        bool
+        """
         return self.n_faces > 0 and self.n_open_edges == 0
 
     @property
     def manifold(self) -> bool:
-        """Closed, of one orientation, and without pinches."""
+        """Whether the mesh is closed, of one orientation, and without pinches.
+
+        Returns
+        -------
+        bool
+        """
         return self.closed and self.n_flipped_edges == 0 and self.n_pinches == 0
 
     @property
     def sound(self) -> bool:
-        """A solid: manifold, of positive volume, without unclear faces or self-intersection."""
+        """Whether it is a solid: manifold, of positive volume, without unclear faces or self-intersection.
+
+        Returns
+        -------
+        bool
+        """
         return self.manifold and self.volume > 0 and self.n_unclear == 0 and self.n_crossings == 0
 
 
@@ -80,7 +95,19 @@ def check_mesh(mesh: Mesh) -> MeshReport:
     ----------
     mesh : Mesh
         World mm.
+
+    Returns
+    -------
+    MeshReport
+
+    Examples
+    --------
+    >>> tetrahedron = Mesh(np.array([[0.0, 0, 0], [6, 0, 0], [0, 6, 0], [0, 0, 6]]),
+    ...                    np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]))
+    >>> check_mesh(tetrahedron).sound, check_mesh(Mesh(tetrahedron.vertices, tetrahedron.faces[1:])).n_open_edges
+    (True, 3)
     """
+    # what needs closed walls or finite vertices is not measured without them
     finite = bool(np.isfinite(mesh.vertices).all())
     first, n_faces_at = _edges(mesh)
     fans, used = _fans(mesh, first)
@@ -154,6 +181,7 @@ def _flipped_edges(mesh: Mesh) -> int:
 
 def _fans(mesh: Mesh, first: NDArray[np.intp]) -> tuple[int, int]:
     """Number of fans of faces around vertices, and of vertices in use; a fan is a run of faces joined by edges."""
+    # two faces on an edge share both of its ends: their corners there belong to one fan
     edge = np.flatnonzero(first != np.arange(len(first)))
     twin = first[edge]
     start, end = edge, _next_corner(edge)

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,7 @@ def spread(residuals: Array) -> float:
     return 1.4826 * float(np.median(np.abs(residuals)))
 
 
-def cauchy_weights(residuals: Array, scale: ArrayLike, *, times: ArrayLike = 1.0) -> Array:
+def cauchy_weights(residuals: Array, scale: float | Array, *, times: float | NDArray = 1.0) -> Array:
     """Weights 1 / (1 + (r / scale)^2): an outlier counts little, but never nothing.
 
     Parameters
@@ -58,7 +58,7 @@ def cauchy_weights(residuals: Array, scale: ArrayLike, *, times: ArrayLike = 1.0
     return times / (1 + (residuals / scale) ** 2)
 
 
-def geman_mcclure_weights(residuals: Array, scale: ArrayLike, *, times: ArrayLike = 1.0) -> Array:
+def geman_mcclure_weights(residuals: Array, scale: float | Array, *, times: float | NDArray = 1.0) -> Array:
     """Weights 1 / (1 + (r / scale)^2)^2: the square of Cauchy's.
 
     Parameters
@@ -77,7 +77,7 @@ def geman_mcclure_weights(residuals: Array, scale: ArrayLike, *, times: ArrayLik
     return times / (1 + (residuals / scale) ** 2) ** 2
 
 
-def huber_weights(residuals: Array, scale: ArrayLike) -> Array:
+def huber_weights(residuals: Array, scale: float | Array) -> Array:
     """Weights min(1, scale / |r|): an outlier pulls as hard as a residual of one scale.
 
     Parameters
@@ -94,7 +94,7 @@ def huber_weights(residuals: Array, scale: ArrayLike) -> Array:
     return 1 / np.maximum(1, np.abs(residuals) / scale)
 
 
-def tukey_weights(residuals: Array, cut: ArrayLike) -> Array:
+def tukey_weights(residuals: Array, cut: float | Array) -> Array:
     """Tukey's biweight (1 - (r / cut)^2)^2, nothing beyond the cut.
 
     Parameters
@@ -143,7 +143,7 @@ def weighted_fit(basis: Array, values: Array, factors: Array, *, ridge: float = 
     if ridge:
         n = basis.shape[1]
         system, target = np.concatenate([system, ridge * np.eye(n)]), np.concatenate([target, np.zeros(n)])
-    return np.linalg.lstsq(system, target, rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(system, target, rcond=None)[0], float)
 
 
 def reweighted_fit(

@@ -38,11 +38,13 @@ def crossings(mesh: Mesh) -> NDArray[np.intp]:
     corners = mesh.corners - mesh.vertices.mean(axis=0)  # near the origin: no cancellation
     lo, hi = corners.min(axis=1), corners.max(axis=1)
     touch = _TOUCH * (hi - lo).max(axis=1)
+    # pairs whose boxes meet, and whose planes do not separate them
     pairs = _near_pairs(lo, hi)
     flat = np.ones(len(pairs), bool)
     for this, other in ((0, 1), (1, 0)):
         pierced, level = _against_plane(corners, mesh.normals, touch, pairs[:, this], pairs[:, other])
         pairs, flat = pairs[pierced | level], (flat & level)[pierced | level]
+    # the other axes: in space, or within the common plane
     across, beside = pairs[~flat], pairs[flat]
     found = [across[_cross_in_space(corners, touch, across)], beside[_overlap_in_plane(corners, touch, beside)]]
     return np.concatenate(found)
@@ -50,10 +52,12 @@ def crossings(mesh: Mesh) -> NDArray[np.intp]:
 
 def _near_pairs(lo: NDArray, hi: NDArray) -> NDArray[np.intp]:
     """Pairs of boxes that overlap, shape (N, 2), found by sorting the boxes into the cells of a grid."""
+    # cells of about the size of a face
     origin, span = lo.min(axis=0), hi.max(axis=0) - lo.min(axis=0)
     cell = np.maximum(1.5 * (hi - lo).mean(axis=0), span / _MAX_CELLS).clip(1e-12)
     first, last = ((edge - origin) // cell for edge in (lo, hi))
     face, at = _cells_of_boxes(first.astype(np.int64), last.astype(np.int64))
+    # entries of one cell lie side by side once they are sorted
     grid = at.max(axis=0) + 1
     key = np.ravel_multi_index(tuple(at.T), tuple(grid))
     order = np.argsort(key, kind="stable")

@@ -1,1 +1,1 @@
-"""What a workshop asks of a patch: mass, a way in, room to fit."""
+"""What the maker of an implant asks of a patch: its mass, a way in, room to fit."""

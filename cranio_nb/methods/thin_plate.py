@@ -42,8 +42,9 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused, NoOpening
 from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..prior import file as prior_file
-from ..prior.shape_prior import Prior, expect
+from ..prior.around_opening import predict_around
+from ..prior.file import load_prior
+from ..prior.shape_prior import Prior
 from ..prosthesis import Prosthesis
 from ..vault import opening_search, radius_measurement, radius_voxels, symmetry
 from ..vault.ray_grid import RadiusMap, filled_from_nearest
@@ -134,7 +135,7 @@ def design(
     options = {k: v for k, v in locals().items() if k not in ("bone", "openings", "progress")}
     tell = progress or (lambda stage, done: None)
     began = time.perf_counter()
-    learned = prior_file.load(Path(prior)) if prior else None
+    learned = load_prior(Path(prior)) if prior else None
     openings = opening_search.find_openings(bone) if openings is None else openings
     tell("symmetry", 0.1)
     plane, found = _symmetry(bone, openings[0]) if mirror else (None, {"unused": "not asked for"})
@@ -289,7 +290,7 @@ def _other_side(bone: Volume, vault: RadiusMap, plane: SymmetryPlane) -> tuple[A
 
 def _expected(bone: Volume, vault: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
     """Outer and inner radii that a prior lets expect, continued where it does not reach; None where it never does."""
-    told = expect(learned, bone, vault)
+    told = predict_around(learned, bone, vault)
     if not (np.isfinite(told.outer) & vault.hole).any():
         return None
     outer, inner = (

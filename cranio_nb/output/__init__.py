@@ -1,1 +1,1 @@
-"""Designs -> files and pages, all of them or none."""
+"""Designs and comparisons -> files and pages, all of them or none."""

@@ -1,6 +1,6 @@
 """A finished run -> its folder of files, all of them or none.
 
-Meshes and `design.json` are in world mm, DICOM LPS; the patch stands on the input's own grid (NIfTI counts in RAS).
+Meshes and `design.json` are in world mm, DICOM LPS; the patch is on the input's own grid (NIfTI counts in RAS).
 """
 
 from __future__ import annotations
@@ -13,13 +13,16 @@ from pathlib import Path
 from typing import Any
 
 from ..evaluation.paper_tables import balloon_ranges, count_statuses
-from ..geometry.mesh_check import check_mesh
-from ..implant.workshop import implant_data
-from ..methods.catalogue import default_options
+from ..geometry.mesh_check import MeshReport, check_mesh
+from ..grid import AxisOrder
+from ..implant.mass import weigh_implant
+from ..methods.catalogue import METHODS, default_options
 from ..pipeline.run import RunResult
 from ..prosthesis import Prosthesis
 from ..readers import LoadReport
 from . import files
+from .mesh_files import write_mesh
+from .nifti_files import write_nifti
 from .staging import check_folder, staged
 
 FILES = ("prosthesis.stl", "patch.nii.gz", "design.json", "report.html")
@@ -27,15 +30,15 @@ FILES = ("prosthesis.stl", "patch.nii.gz", "design.json", "report.html")
 _LIBRARIES = ("numpy", "scipy", "scikit-image", "pydicom", "nibabel", "pynrrd", "trimesh", "manifold3d")
 
 
-def write_outputs(result: RunResult, folder: Path, tell: Callable[[str, float], None] | None = None) -> None:
-    """Write the files of a run into a folder that is there.
+def write_outputs(result: RunResult, folder: Path, progress: Callable[[str, float], None] | None = None) -> None:
+    """Write the `FILES` of a run.
 
     Parameters
     ----------
     result : RunResult
     folder : Path
-        Usually the one from `staged`.
-    tell : callable, optional
+        Must be there; usually the one from `staging.staged`.
+    progress : callable, optional
         Called with (step, fraction of the whole).
 
     Raises
@@ -43,18 +46,22 @@ def write_outputs(result: RunResult, folder: Path, tell: Callable[[str, float], 
     CannotWrite
         If the mesh is not a solid, or a file cannot be written.
     """
-    from .design_page import report_page
+    from .design_page import report_page  # loads what draws
 
-    tell = tell or (lambda step, done: None)
-    tell("writing", 0.85)
-    stl, report = folder / "prosthesis.stl", result.mesh
-    files.write_mesh(result.prosthesis.mesh, stl, n_parts=report.n_parts, report=report)
-    if result.prosthesis.patch is not None:
-        files.write_nifti(result.prosthesis.patch, folder / "patch.nii.gz", order=result.case.load.order)
+    progress = progress or (lambda step, done: None)
+    progress("writing", 0.85)
+    _write_shapes(result.prosthesis, folder, result.mesh, result.case.load.order)
     files.write_json(folder / "design.json", design_record(result))
-    tell("report", 0.92)
+    progress("report", 0.92)
     files.write_text(folder / "report.html", report_page(result))
-    tell("done", 1.0)
+    progress("done", 1.0)
+
+
+def _write_shapes(made: Prosthesis, folder: Path, mesh: MeshReport, order: AxisOrder | None) -> None:
+    """Write the mesh of a design, and its voxels where it has them."""
+    write_mesh(made.mesh, folder / "prosthesis.stl", n_parts=mesh.n_parts, report=mesh)
+    if made.patch is not None:
+        write_nifti(made.patch, folder / "patch.nii.gz", order=order)
 
 
 def save(made: Prosthesis, folder: str | PathLike[str], report: LoadReport | None = None) -> list[Path]:
@@ -66,7 +73,7 @@ def save(made: Prosthesis, folder: str | PathLike[str], report: LoadReport | Non
     folder : path
         Made if missing.
     report : LoadReport, optional
-        Of the scan: with it the voxels stand on the scan's own grid, axis by axis.
+        Of the scan: with it the voxels are on the scan's own grid, axis by axis.
 
     Returns
     -------
@@ -77,24 +84,37 @@ def save(made: Prosthesis, folder: str | PathLike[str], report: LoadReport | Non
     ------
     CannotWrite
         If the mesh is not a solid, or a file cannot be written; nothing is left behind then.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from cranio_nb.stages.surface_reconstruction import extract_surface
+    >>> from cranio_nb.volume import Volume
+    >>> cube = np.zeros((8, 8, 8), bool)
+    >>> cube[2:6, 2:6, 2:6] = True
+    >>> patch = Volume(cube, np.eye(4))
+    >>> made = Prosthesis(extract_surface(patch), np.zeros(0, np.uint8), patch, "hull")
+    >>> [path.name for path in save(made, "out")]
+    ['prosthesis.stl', 'patch.nii.gz', 'design.json']
     """
+    # what can be refused is refused before anything is written
     folder = Path(folder)
     check_folder(folder, FILES)
     mesh = check_mesh(made.mesh)
     with staged(folder) as part:
-        files.write_mesh(made.mesh, part / "prosthesis.stl", n_parts=mesh.n_parts, report=mesh)
-        if made.patch is not None:
-            files.write_nifti(made.patch, part / "patch.nii.gz", order=None if report is None else report.order)
-        files.write_json(
-            part / "design.json",
-            made_record(made) | {"mesh": mesh, "load": None if report is None else load_record(report)},
-        )
-        names = [path.name for path in part.iterdir()]
-    return [folder / name for name in FILES if name in names]
+        _write_shapes(made, part, mesh, None if report is None else report.order)
+        load = None if report is None else load_record(report)
+        files.write_json(part / "design.json", made_record(made) | {"mesh": mesh, "load": load})
+        written = {path.name for path in part.iterdir()}
+    return [folder / name for name in FILES if name in written]
 
 
 def made_record(made: Prosthesis) -> dict[str, Any]:
     """What `design.json` says of the design itself.
+
+    Parameters
+    ----------
+    made : Prosthesis
 
     Returns
     -------
@@ -107,17 +127,21 @@ def made_record(made: Prosthesis) -> dict[str, Any]:
         "not_for_clinical_use": True,
         "world": "DICOM LPS, mm",
         "method": made.method,
-        "parameters": default_options(made.method) | made.parameters,
+        "parameters": (default_options(made.method) if made.method in METHODS else {}) | made.parameters,
         "slices": slices,
         "slice_counts": count_statuses(slices),
         "balloons": balloon_ranges(slices),
-        "implant": implant_data(made.mesh),
+        "implant": weigh_implant(made.mesh),
         "versions": versions(),
     }
 
 
 def design_record(result: RunResult) -> dict[str, Any]:
-    """What `design.json` says of a run. No text of the input's headers, no path.
+    """What `design.json` says of a run: no text of the input's headers, no path.
+
+    Parameters
+    ----------
+    result : RunResult
 
     Returns
     -------
@@ -137,7 +161,17 @@ def design_record(result: RunResult) -> dict[str, Any]:
 
 
 def load_record(load: LoadReport) -> dict[str, Any]:
-    """What `design.json` says of the input."""
+    """What `design.json` says of the input: no text of its headers, no path.
+
+    Parameters
+    ----------
+    load : LoadReport
+
+    Returns
+    -------
+    dict
+        JSON-able after `files.jsonable`.
+    """
     return {
         "source": load.source,
         "kind": load.kind,
@@ -149,7 +183,17 @@ def load_record(load: LoadReport) -> dict[str, Any]:
 
 
 def measures(result: RunResult) -> dict[str, Any]:
-    """Fit of the rim, and the scores where a truth was given (else null)."""
+    """What `design.json` says of how good a design is.
+
+    Parameters
+    ----------
+    result : RunResult
+
+    Returns
+    -------
+    dict
+        Fit of the rim, and the scores; None for what could not be measured.
+    """
     truth = result.truth
     return {
         "rim_gap_mm": result.rim,
@@ -159,7 +203,18 @@ def measures(result: RunResult) -> dict[str, Any]:
 
 
 def versions() -> dict[str, str]:
-    """Versions of Python and of the libraries that shape a result."""
+    """Versions of Python and of the libraries that shape a result.
+
+    Returns
+    -------
+    dict of str to str
+        Name -> version, or "missing".
+
+    Examples
+    --------
+    >>> list(versions())[:3]
+    ['python', 'numpy', 'scipy']
+    """
     found = {"python": sys.version.split()[0]}
     for name in _LIBRARIES:
         try:

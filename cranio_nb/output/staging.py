@@ -1,4 +1,4 @@
-"""Files that belong together get their place together: written into a hidden folder first, then moved, all or none."""
+"""Files that belong together are written together: into a hidden folder first, then moved, all or none."""
 
 from __future__ import annotations
 
@@ -14,10 +14,21 @@ from ..errors import CannotWrite
 def check_folder(folder: Path, names: tuple[str, ...]) -> None:
     """Refuse, before any work is done, a folder that cannot take the files; nothing is made.
 
+    Parameters
+    ----------
+    folder : Path
+        It and the folders above it may be missing.
+    names : tuple of str
+        Names of the files.
+
     Raises
     ------
     CannotWrite
         A file is in the way of the folder, a folder in the way of a file, or writing is not allowed.
+
+    Examples
+    --------
+    >>> check_folder(Path("out/deeper"), ("a.txt",))
     """
     folder = folder.absolute()
     there = next(p for p in (folder, *folder.parents) if os.path.lexists(p))
@@ -33,16 +44,32 @@ def check_folder(folder: Path, names: tuple[str, ...]) -> None:
 
 @contextmanager
 def staged(folder: Path) -> Iterator[Path]:
-    """A hidden folder to write into; its contents get their place in `folder` only if all goes well.
+    """A hidden folder to write into; its contents are moved to `folder` only if all goes well.
 
-    Files of the same names are replaced, each at once; others in `folder` stay. Subfolders of the same names are
-    replaced as a whole.
+    Parameters
+    ----------
+    folder : Path
+        Made if missing. Files of the same names are replaced, each at once; subfolders of the same names as a whole;
+        all else stays.
+
+    Returns
+    -------
+    context manager of Path
+        The hidden folder.
 
     Raises
     ------
     CannotWrite
         If the system refuses.
+
+    Examples
+    --------
+    >>> with staged(Path("out")) as part:
+    ...     _ = (part / "a.txt").write_text("words")
+    >>> [path.name for path in Path("out").iterdir()]
+    ['a.txt']
     """
+    # the hidden folder is on the same disk as its goal, so that moving is renaming
     folder = folder.absolute()
     made: list[Path] = []
     try:
@@ -65,11 +92,11 @@ def staged(folder: Path) -> Iterator[Path]:
 
 
 def _publish(part: Path, folder: Path) -> None:
-    """Move what was written to where it belongs."""
+    """Move what was written to where it belongs, in the order of writing."""
     if not folder.exists():
         part.replace(folder)
         return
-    for item in sorted(part.iterdir(), key=lambda p: p.stat().st_mtime_ns):  # in the order of writing
+    for item in sorted(part.iterdir(), key=lambda p: p.stat().st_mtime_ns):
         goal = folder / item.name
         if goal.is_dir() and not goal.is_symlink():
             goal.replace(part.parent / f"old-{item.name}")

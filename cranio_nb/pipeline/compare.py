@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..evaluation import scores
+from ..evaluation import mesh_distances, scores
 from ..evaluation.against_truth import side_distances, table3, true_prosthesis
 from ..evaluation.rim_gap import rim_gap
 from ..opening import Opening
@@ -88,7 +88,7 @@ class Reference:
     @classmethod
     def of(cls, truth: Volume, bone: Volume, largest: Opening) -> Reference:
         """From the mask of the missing bone, the skull with the hole and its largest opening."""
-        true = true_prosthesis(truth, bone, largest)
+        true = true_prosthesis(truth, bone, largest.head_centre)
         return cls(true, _thickness(true))
 
 
@@ -211,7 +211,7 @@ def _accuracy(made: Prosthesis, walls: NDArray[np.float64], truth: Reference, bo
         "hd95": score.hd95,
         "assd": score.assd,
         "volume_ratio": score.volume_ratio,
-        "thickness_rmse": scores.thickness_error(made, walls, true, truth.thickness) if walled else _UNKNOWN,
+        "thickness_rmse": mesh_distances.thickness_error(made, walls, true, truth.thickness) if walled else _UNKNOWN,
         "top_mean": rows["outer"].mean if "outer" in rows else _UNKNOWN,
         "inner_mean": rows["inner"].mean if "inner" in rows else _UNKNOWN,
     }
@@ -219,7 +219,9 @@ def _accuracy(made: Prosthesis, walls: NDArray[np.float64], truth: Reference, bo
 
 def _thickness(made: Prosthesis) -> NDArray[np.float64]:
     """Its `evaluate.thickness`; empty where a side is missing."""
-    return scores.thickness(made) if (made.sides == OUTER).any() and (made.sides == INNER).any() else np.empty(0)
+    return (
+        mesh_distances.thickness(made) if (made.sides == OUTER).any() and (made.sides == INNER).any() else np.empty(0)
+    )
 
 
 def agreement(made: dict[str, Prosthesis]) -> dict[tuple[str, str], tuple[float, float]]:

@@ -13,7 +13,8 @@ from typing import Any
 
 from ..errors import InputRefused, NoOpening
 from ..evaluation.against_truth import TruthCheck, check_truth
-from ..evaluation.paper_tables import OpeningSize, count_statuses, measure_opening, not_converged
+from ..evaluation.opening_size import OpeningSize, measure_opening
+from ..evaluation.paper_tables import count_not_converged, count_statuses
 from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
 from ..methods.catalogue import default_options
@@ -150,7 +151,7 @@ def run_design(
     tell("measuring", 0.8)
     mesh = check_mesh(made.mesh)
     rim = rim_gap(made.surface(RIM), case.bone) if (made.sides == RIM).any() else None
-    check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.openings[0])
+    check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.openings[0].head_centre)
     clock.lap("measures")
     found = _findings(made, mesh, case.openings)
     sizes = tuple(measure_opening(one) for one in case.openings)
@@ -248,7 +249,7 @@ def parameters_used(result: RunResult) -> dict[str, Any]:
 def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...]) -> tuple[Finding, ...]:
     """What a reader of the result must not miss."""
     slices = made.record.get("slices", [])
-    counts, restless = count_statuses(slices), not_converged(slices)
+    counts, restless = count_statuses(slices), count_not_converged(slices)
     candidates = {
         "CarriedSlices": (counts["carried"], "{} slices could not be bridged and follow their neighbours."),
         "SkippedSlices": (counts["skipped"], "{} slices could not be bridged and were left empty."),

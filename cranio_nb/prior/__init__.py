@@ -1,1 +1,1 @@
-"""What intact skulls let one predict of the bone in a hole."""
+"""What intact skulls let one predict: learn a prior, keep it in a file, predict the bone around an opening."""

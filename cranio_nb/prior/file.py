@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CannotWrite, InputRefused
-from .alignment import Cloud
 from .shape_prior import Prior
+from .skull_points import SkullPoints
 from .vault_radii import vault_rays
 
 VERSION = 1
@@ -25,33 +25,49 @@ VERSION = 1
 _REMEDY = "Make one with `cranio-nb prior learn`."
 
 
-def save(prior: Prior, path: Path) -> None:
+def save_prior(prior: Prior, path: Path) -> None:
     """Write a prior, whole or not at all.
+
+    Parameters
+    ----------
+    prior : Prior
+    path : Path
+        Of the file, in a folder that is there.
 
     Raises
     ------
     CannotWrite
         ``CannotWrite`` when the system refuses; what was there before is still there.
     """
-    inside, outside, radii = (np.asarray(a, np.float32) for a in (prior.mean.inside, prior.mean.outside, prior.radii))
+    outer, inner, radii = (np.asarray(a, np.float32) for a in (prior.mean.outer, prior.mean.inner, prior.radii))
+    # written beside its goal and moved there in one step
     try:
         with tempfile.TemporaryDirectory(prefix=".part-", dir=path.absolute().parent) as folder:
             part = Path(folder) / "prior.npz"
-            np.savez_compressed(part, version=np.int64(VERSION), inside=inside, outside=outside, radii=radii)
+            np.savez_compressed(part, version=np.int64(VERSION), inside=inner, outside=outer, radii=radii)
             os.replace(part, path)
     except OSError as error:
         reason = error.strerror or type(error).__name__
         raise CannotWrite("CannotWrite", f"The prior could not be written: {reason}.") from error
 
 
-def load(path: Path) -> Prior:
+def load_prior(path: Path) -> Prior:
     """Read a prior.
+
+    Parameters
+    ----------
+    path : Path
+
+    Returns
+    -------
+    Prior
 
     Raises
     ------
     InputRefused
         ``NoPrior`` when there is no such file, or when it is no sound prior of this version.
     """
+    # without pickle: whatever the file holds, none of it is run
     try:
         with open(path, "rb") as file, np.load(file, allow_pickle=False) as held:
             version = int(held["version"])
@@ -71,10 +87,12 @@ def load(path: Path) -> Prior:
 def _checked(arrays: dict[str, NDArray]) -> Prior:
     """The prior in the arrays of a file, if they have the form of one."""
     shapes = {"inside": (None, 3), "outside": (None, 3), "radii": (None, 2, len(vault_rays()))}
+    # None stands for any number above 0
     for name, shape in shapes.items():
         array = arrays.get(name, np.zeros(0))
         good = array.dtype == np.float32 and array.ndim == len(shape) and len(array) > 0
         if not good or array.shape[1:] != shape[1:] or not np.isfinite(array).all():
             raise InputRefused("NoPrior", f"The prior is damaged: its {name} part is not as it should be.", _REMEDY)
-    mean = Cloud(arrays["inside"].astype(float), arrays["outside"].astype(float), np.zeros(3), np.eye(3))
+    outer, inner = (arrays[name].astype(float) for name in ("outside", "inside"))
+    mean = SkullPoints(outer=outer, inner=inner, centre=np.zeros(3), axes=np.eye(3))
     return Prior(mean, arrays["radii"])

@@ -1,6 +1,6 @@
-"""A folder of scans -> the intact skulls in it; a shape prior -> how well it foretells skulls it does not know.
+"""A folder of scans -> the intact skulls in it; a shape prior -> how well it predicts skulls it was not given.
 
-Frames: as in `prior`.
+Frame: head (see `head_frame`); radii in mm of the mean head.
 """
 
 from __future__ import annotations
@@ -14,14 +14,15 @@ from numpy.typing import NDArray
 
 from ..errors import CranioError, InputRefused
 from ..readers import read_ct
-from ..stages.segmentation import BONE_HU, segment
+from ..stages.segmentation import bone_of
 from ..volume import Volume
-from .shape_prior import Prior, check_intact, condition
+from .learning import check_intact
+from .shape_prior import Prior, conditional_mean
 from .vault_radii import vault_rays
 
 _FILES = (".nii", ".nii.gz", ".nrrd")
 _HOLES = ((0.0, 1.0, 0.5), (0.0, 0.1, 1.0), (0.8, 0.4, 0.6), (0.3, -0.8, 0.7))  # occipital, vertex, parietal, frontal
-_HALF, _BESIDE = np.radians(25.0), np.radians(3.0)  # a hole of 70 mm, and the rim beside it that is not trusted
+_HALF_RAD, _BESIDE_RAD = np.radians(25.0), np.radians(3.0)  # a hole of 70 mm, and the rim beside it that is not trusted
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,17 @@ class Accuracy:
     inner: float
 
 
-def scans_in(folder: Path) -> list[Path]:
-    """What may be scans in a folder: NIfTI and NRRD files, and subfolders of DICOM files, by name.
+def list_scans(folder: Path) -> list[Path]:
+    """What may be scans in a folder: NIfTI and NRRD files, and subfolders of DICOM files.
+
+    Parameters
+    ----------
+    folder : Path
+
+    Returns
+    -------
+    list of Path
+        By name.
 
     Raises
     ------
@@ -59,10 +69,10 @@ def scans_in(folder: Path) -> list[Path]:
     return found
 
 
-def intact_skulls(
+def read_intact_skulls(
     scans: list[Path],
     *,
-    threshold: float = BONE_HU,
+    threshold: float | None = None,
     skipped: Callable[[str, str], None],
     progress: Callable[[str, float], None] | None = None,
 ) -> Iterator[Volume]:
@@ -71,19 +81,26 @@ def intact_skulls(
     Parameters
     ----------
     scans : list of Path
-        See `scans_in`.
-    threshold : float
-        Lowest HU of bone; masks are taken as they are.
+        See `list_scans`.
+    threshold : float, optional
+        Lowest HU of bone in a CT; the package's default when not given.
     skipped : callable
         Called with (name, why) for every other scan.
     progress : callable, optional
         Called with (step, fraction).
+
+    Yields
+    ------
+    Volume
+        Bool mask.
     """
     for i, path in enumerate(scans):
         if progress:
             progress("reading", i / len(scans))
+        # a scan that cannot be used is told about, and the next one read
         try:
-            bone = segment(read_ct(path)[0], threshold=threshold)
+            scan = read_ct(path)[0]
+            bone = bone_of(scan, None if scan.voxels.dtype == bool else threshold)
             check_intact(bone)
         except CranioError as error:
             skipped(path.name, error.message)
@@ -91,7 +108,7 @@ def intact_skulls(
         yield bone
 
 
-def learning_curve(
+def measure_learning_curve(
     prior: Prior, sizes: tuple[int, ...] = (5, 10, 20), progress: Callable[[str, float], None] | None = None
 ) -> tuple[Accuracy, ...]:
     """How the error falls with the number of skulls: each skull in turn is left out, opened and closed again.
@@ -105,6 +122,11 @@ def learning_curve(
     progress : callable, optional
         Called with (step, fraction).
 
+    Returns
+    -------
+    tuple of Accuracy
+        By rising number of skulls.
+
     Notes
     -----
     One hole of 70 mm a skull, at four places in turn. The skull that is left out had its part in the mean head on which
@@ -113,11 +135,12 @@ def learning_curve(
     n = len(prior.radii)
     counts = sorted({size for size in sizes if size < n - 1} | {n - 1})
     rows = []
-    for turn, count in enumerate(counts):
+    for round_, count in enumerate(counts):
         errors = []
         for one in range(n):
             if progress:
-                progress("checking", (turn + one / n) / len(counts))
+                progress("checking", (round_ + one / n) / len(counts))
+            # as many of the others as asked for, and a hole in the one left out
             others = np.random.default_rng(one).permutation(np.delete(np.arange(n), one))[:count]
             place = np.array(_HOLES[one % len(_HOLES)])
             errors.append(_error(prior.subset(others), prior.radii[one].astype(float), place))
@@ -129,6 +152,6 @@ def learning_curve(
 def _error(prior: Prior, truth: NDArray[np.float64], place: NDArray[np.float64]) -> NDArray[np.float64]:
     """Mean absolute error of the outer and the inner radius in a round hole, shape (2,)."""
     away = np.arccos(np.clip(vault_rays() @ place / np.linalg.norm(place), -1, 1))
-    hole = away < _HALF
-    known = np.where(away < _HALF + _BESIDE, np.nan, truth)
-    return np.abs(condition(prior, known, hole) - truth[:, hole]).mean(axis=1)
+    hole = away < _HALF_RAD
+    known = np.where(away < _HALF_RAD + _BESIDE_RAD, np.nan, truth)
+    return np.abs(conditional_mean(prior, known, hole) - truth[:, hole]).mean(axis=1)

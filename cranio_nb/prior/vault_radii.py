@@ -1,6 +1,6 @@
 """The vault of a skull as two maps over the rays of the head frame: a bone mask and its frame come in -> maps go out.
 
-Frames: head (see `headframe`); radii in mm of the mean head, outer side first. All maps are over `vault_rays`, shape
+Frames: head (see `head_frame`); radii in mm of the mean head, outer side first. All maps are over `vault_rays`, shape
 (..., m); the distance between two rays is their chord on a sphere of the vault's size, in mm.
 """
 
@@ -14,35 +14,54 @@ from scipy.spatial import cKDTree
 
 from ..vault.ray_casting import surface_radii
 from ..volume import Volume
-from . import alignment
-from .alignment import HeadFrame
+from .head_frame import HeadFrame, even_directions, mirror_index
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-VAULT = 105.0
-"""Degrees from the vertex down to which the vault is mapped."""
-RADIUS = 85.0
-"""mm: turns chords of the unit sphere into lengths."""
-_OUTLIER = 2.5  # mm off its surroundings: a suture, a vessel, a loose chip
+VAULT_DEG = 105.0
+"""From the vertex down to which the vault is mapped."""
+RADIUS_MM = 85.0
+"""Turns chords of the unit sphere into lengths."""
+_OUTLIER_MM = 2.5  # off its surroundings: a suture, a vessel, a loose chip
 
 
 @cache
 def vault_rays() -> Array:
-    """The rays of the vault, shape (m, 3), head frame: about 3 mm apart, symmetric about x = 0; read-only."""
-    rays = alignment.sphere(5)
-    rays = rays[rays[:, 2] > np.cos(np.radians(VAULT))]
+    """The rays of the vault.
+
+    Returns
+    -------
+    ndarray, shape (m, 3)
+        Unit vectors of the head frame, about 3 mm apart on the vault, symmetric about x = 0; read-only.
+
+    Examples
+    --------
+    >>> vault_rays().shape
+    (6437, 3)
+    """
+    rays = even_directions(5)
+    rays = rays[rays[:, 2] > np.cos(np.radians(VAULT_DEG))]
     rays.setflags(write=False)
     return rays
 
 
-def mirrored(radii: NDArray) -> NDArray:
-    """Radius maps (..., m) over `vault_rays` of the mirror images of skulls."""
-    return radii[..., alignment.twins(vault_rays())]
+def mirror_radii(radii: NDArray) -> NDArray:
+    """Radius maps of the mirror images of skulls.
+
+    Parameters
+    ----------
+    radii : ndarray, shape (..., m)
+
+    Returns
+    -------
+    ndarray, shape (..., m)
+    """
+    return radii[..., mirror_index(vault_rays())]
 
 
-def measure(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
-    """Outer and inner radius of a skull along `vault_rays`, shape (2, m), mm of the mean head; nan for none.
+def measure_vault(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
+    """Outer and inner radius of a skull along `vault_rays`.
 
     Parameters
     ----------
@@ -51,6 +70,11 @@ def measure(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
     frame : HeadFrame
     middle : ndarray, shape (m,)
         Outer radius of the mean head, mm.
+
+    Returns
+    -------
+    ndarray, shape (2, m)
+        Outer and inner radius, mm of the mean head; nan where a ray meets no bone.
     """
     rays = vault_rays()
     stretch = frame.stretch(rays)
@@ -59,50 +83,128 @@ def measure(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
     return np.stack([outer, inner]) / stretch
 
 
-def radius_along_rays(points: Array) -> Array:
-    """Radius of a surface given by points (n, 3) along each ray: weighted mean of the four nearest directions."""
+def interpolate_radius(points: Array) -> Array:
+    """Radius of a surface along each ray.
+
+    Parameters
+    ----------
+    points : ndarray, shape (n, 3)
+        Of the surface, head frame.
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        Mean over the four nearest directions, weighted by the inverse square of their chord.
+    """
     radius = np.linalg.norm(points, axis=1)
     apart, at = cKDTree(points / radius[:, None]).query(vault_rays(), 4)
     weight = 1 / (apart + 1e-3) ** 2
     return (radius[at] * weight).sum(axis=1) / weight.sum(axis=1)
 
 
-def without_outliers(radii: Array, middle: Array) -> Array:
-    """Radii (2, m) with nan where a ray is far off its surroundings."""
-    offset = radii - middle
+def without_outliers(radii: Array, usual: Array) -> Array:
+    """Radii with nan where a ray is far off what is usual around it.
+
+    Parameters
+    ----------
+    radii : ndarray, shape (2, m)
+        mm; nan where unknown.
+    usual : ndarray, shape (2, m)
+        The mean head's radii moved by the `local_median` of what the skull differs from them, mm.
+
+    Returns
+    -------
+    ndarray, shape (2, m)
+        mm.
+    """
     with np.errstate(invalid="ignore"):
-        good = np.abs(offset - surroundings(offset)) < _OUTLIER
+        good = np.abs(radii - usual) < _OUTLIER_MM
     return np.where(good, radii, np.nan)
 
 
-def surroundings(values: Array) -> Array:
-    """Median of values (2, m) over each ray and its twelve neighbours; 0 where all are nan."""
+def local_median(values: Array) -> Array:
+    """Median over each ray and its twelve neighbours.
+
+    Parameters
+    ----------
+    values : ndarray, shape (2, m)
+        nan where unknown.
+
+    Returns
+    -------
+    ndarray, shape (2, m)
+        0 where all are nan.
+    """
     around = values[:, _neighbours(13)]
     return np.nanmedian(np.where(np.isnan(around).all(axis=-1, keepdims=True), 0.0, around), axis=-1)
 
 
-def is_open(radii: Array) -> Mask:
-    """Rays without bone whose neighbours mostly meet none either: openings, not sutures."""
+def rays_without_bone(radii: Array) -> Mask:
+    """Rays without bone whose neighbours mostly meet none either: openings, not sutures.
+
+    Parameters
+    ----------
+    radii : ndarray, shape (2, m)
+        nan where a ray meets no bone.
+
+    Returns
+    -------
+    ndarray of bool, shape (m,)
+    """
     free = np.isnan(radii[0])
     return free & (free[_neighbours(7)].mean(axis=1) > 0.5)
 
 
-def near(marked: Mask, reach: float) -> Mask:
-    """Rays up to `reach` mm beside marked ones, these included."""
-    return distance(marked) <= reach
+def rays_near(marked: Mask, reach_mm: float) -> Mask:
+    """Rays beside marked ones.
+
+    Parameters
+    ----------
+    marked : ndarray of bool, shape (m,)
+    reach_mm : float
+        Largest chord.
+
+    Returns
+    -------
+    ndarray of bool, shape (m,)
+        With the marked ones.
+    """
+    return distance_mm(marked) <= reach_mm
 
 
-def distance(marked: Mask) -> Array:
-    """Chord from each ray to the nearest marked one, mm; inf where none is marked."""
+def distance_mm(marked: Mask) -> Array:
+    """Chord from each ray to the nearest marked one.
+
+    Parameters
+    ----------
+    marked : ndarray of bool, shape (m,)
+
+    Returns
+    -------
+    ndarray, shape (m,)
+        mm; inf where none is marked.
+    """
     rays = vault_rays()
-    return cKDTree(rays[marked]).query(rays)[0] * RADIUS if marked.any() else np.full(len(rays), np.inf)
+    return cKDTree(rays[marked]).query(rays)[0] * RADIUS_MM if marked.any() else np.full(len(rays), np.inf)
 
 
 @cache
-def coarse(halvings: int) -> Mask:
-    """Which rays belong to a coarser sphere, too; read-only."""
-    rays = alignment.sphere(halvings)
-    coarse = cKDTree(rays).query(vault_rays())[0] < 0.02  # a tenth to a half of a step: the finer points moved a little
+def coarse_rays(halvings: int) -> Mask:
+    """Which rays belong to a coarser set of directions, too.
+
+    Parameters
+    ----------
+    halvings : int
+        Of `even_directions`; fewer than those of the rays.
+
+    Returns
+    -------
+    ndarray of bool, shape (m,)
+        Read-only.
+    """
+    rays = even_directions(halvings)
+    # a tenth to a half of a step: the finer points moved a little
+    coarse = cKDTree(rays).query(vault_rays())[0] < 0.02
     coarse.setflags(write=False)
     return coarse
 

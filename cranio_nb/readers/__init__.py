@@ -1,9 +1,12 @@
 """Readers: a DICOM folder, a NIfTI or a NRRD file -> `Volume` in HU (or a bone mask) and a `LoadReport`.
 
-Headers first, then a plan, then the pixels: `dicom_files`, `dicom_scan`, `dicom_headers`, `dicom_series`,
-`dicom_slices`, `dicom_geometry`, `dicom_steps`, `dicom_pixels` (`dicom_codecs`, `dicom_rescale`), put together in
-`dicom`; `images` with `nifti_file` and `nrrd_file`; `regrid` and `plausible` serve both. All end in the package's own
-axes (planes up, rows back, columns left) and in LPS mm.
+1. `read`                  path -> DICOM, NIfTI or NRRD; every fault becomes one sentence
+2. `dicom`                 a folder of DICOM files, headers first, then a plan, then the pixels
+3. `image_file`            a NIfTI (`nifti`) or NRRD (`nrrd`) file, both by way of a `stored_image`
+4. `hu_checks`, `regrid`   for all of them: are these HU of a head; sheared or uneven slices made even
+5. `load_report`           what was found, chosen, left and corrected
+
+All end in the package's own axes (planes up, rows back, columns left) and in LPS mm.
 """
 
 from .load_report import Finding, LoadReport

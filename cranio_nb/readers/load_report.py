@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from ..volume import Affine, AxisOrder
+from ..grid import Affine, AxisOrder
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,8 @@ class Finding:
     code : str
         Stable CamelCase name, e.g. ``"GantryTilt"``.
     severity : {"info", "corrected", "warning"}
-        "info": chosen or skipped, nothing changed. "corrected": the data was changed to be right. "warning": look.
+        "info": chosen or skipped, nothing changed. "corrected": the data was changed to be right. "warning":
+        to be checked by a person.
     message : str
         One plain sentence.
     values : dict

@@ -11,9 +11,9 @@ from typing import Any, BinaryIO, cast
 import numpy as np
 
 from ..errors import InputRefused
-from ..volume import Affine
-from .image import Image, check_rest, no_orientation, read_exactly, spatial_shape
+from ..grid import Affine
 from .load_report import Finding
+from .stored_image import Image, check_rest, check_shape, no_orientation, read_exactly
 
 _MM_PER_UNIT = {0: 1.0, 1: 1000.0, 2: 1.0, 3: 1e-3}  # unknown, metre, mm, micrometre (xyzt_units & 7)
 _LPS = np.diag([-1.0, -1.0, 1.0, 1.0])  # NIfTI: x to the right, y to the front
@@ -21,19 +21,40 @@ _MAX_OFFSET = 2**24  # bytes of header extensions
 
 
 def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
-    """Image of a single-file NIfTI-1 or NIfTI-2, compressed or not.
+    """Read a single-file NIfTI-1 or NIfTI-2, compressed or not.
+
+    Parameters
+    ----------
+    stream : binary stream
+        The whole file.
+    allow : collection of str
+        ``"no_orientation"`` takes a file without orientation as it lies.
+
+    Returns
+    -------
+    Image
 
     Raises
     ------
     InputRefused
         ``CorruptFile``, ``UnsupportedFile``, ``UnsupportedPixels``, ``BadShape``, ``LimitExceeded``,
         ``NoOrientation`` or ``BadGeometry``.
+
+    Examples
+    --------
+    >>> import io
+    >>> import nibabel
+    >>> file = nibabel.Nifti1Image(np.zeros((4, 5, 6), np.int16), np.diag([2.0, 2, 3, 1]))
+    >>> image = read_nifti(io.BytesIO(file.to_bytes()))
+    >>> image.raw.shape, image.affine.diagonal()
+    ((4, 5, 6), array([-2., -2.,  3.,  1.]))
     """
+    # the header, and as many voxels as it declares
     data = cast(BinaryIO, gzip.GzipFile(fileobj=stream)) if stream.read(2) == b"\x1f\x8b" else stream
     stream.seek(0)
     try:
         header = _header(data)
-        shape = spatial_shape([int(n) for n in header.get_data_shape()])
+        shape = check_shape([int(n) for n in header.get_data_shape()])
         dtype = _dtype(header)
         offset = int(header.get_data_offset())
         if not header.sizeof_hdr <= offset <= _MAX_OFFSET:
@@ -43,6 +64,8 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
         rest = check_rest(data)
     except (EOFError, OSError, zlib.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
+
+    # index -> LPS mm, and the scaling of the numbers
     affine, findings = _affine(header, allow)
     slope, intercept, more = _scaling(header)
     native = raw.reshape(shape, order="F").astype(dtype.newbyteorder("="), copy=False)
@@ -50,10 +73,12 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
 
 
 def _header(data: BinaryIO) -> Any:
+    """The header of a file that holds its own voxels."""
     import nibabel as nib
     from nibabel.imageglobals import LoggingOutputSuppressor
     from nibabel.spatialimages import HeaderDataError
 
+    # two files, one file, or none of NIfTI
     start = data.read(540)
     data.seek(0)
     if start[344:347] == b"ni1" or start[4:7] == b"ni2":
@@ -73,6 +98,7 @@ def _header(data: BinaryIO) -> Any:
 
 
 def _dtype(header: Any) -> np.dtype:
+    """Type of the voxels: integers or real numbers of up to 8 bytes."""
     dtype = np.dtype(header.get_data_dtype())
     if dtype.kind not in "iuf" or dtype.itemsize > 8:
         message = f"The voxels are of the type {dtype.name}; integers or real numbers are wanted."
@@ -88,6 +114,8 @@ def _affine(header: Any, allow: Collection[str]) -> tuple[Affine, list[Finding]]
     if not (np.isfinite(header["pixdim"][1:4]).all() and (np.asarray(header["pixdim"][1:4]) > 0).all()):
         message = "The voxel size (pixdim) is not positive in every direction."
         raise InputRefused("BadGeometry", message, "Convert the file again from its source.")
+
+    # the sform is the file's own word, the qform its second
     findings = []
     if int(header["sform_code"]) > 0:
         affine = header.get_sform()
@@ -110,6 +138,7 @@ def _sizes_disagree(header: Any) -> list[Finding]:
     """A remark where the sform gives the voxels another size than pixdim does."""
     if int(header["sform_code"]) <= 0:
         return []
+    # the sform's columns are the steps between voxels
     pixdim, spacing = np.asarray(header["pixdim"][1:4], float), np.linalg.norm(header.get_sform()[:3, :3], axis=0)
     if np.allclose(pixdim, spacing, rtol=0.01):
         return []
@@ -121,6 +150,7 @@ def _disagreement(header: Any) -> list[Finding]:
     """A remark where sform and qform place the image's far corner apart."""
     if int(header["sform_code"]) <= 0 or int(header["qform_code"]) <= 0:
         return []
+    # the corner where a difference shows most
     far = np.array([*header.get_data_shape()[:3], 1.0])
     apart = float(np.linalg.norm((header.get_sform() - header.get_qform()) @ far))
     if not apart > 1.0:

@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
-from ..volume import Affine
-from .image import Image, check_rest, no_orientation, read_exactly, spatial_shape
+from ..grid import Affine
 from .load_report import Finding
+from .stored_image import Image, check_rest, check_shape, no_orientation, read_exactly
 
 # sign of (x, y, z) from the file's frame to LPS
 _SPACES = {
@@ -44,23 +44,47 @@ _DTYPES = {name: code for code, names in _TYPES.items() for name in names}
 
 
 def read_nrrd(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
-    """Image of a NRRD file that holds its own voxels.
+    """Read a NRRD file that holds its own voxels.
+
+    Parameters
+    ----------
+    stream : binary stream
+        The whole file.
+    allow : collection of str
+        ``"no_orientation"`` takes a file without orientation as it lies.
+
+    Returns
+    -------
+    Image
 
     Raises
     ------
     InputRefused
         ``CorruptFile``, ``UnsupportedFile``, ``UnsupportedPixels``, ``BadShape``, ``LimitExceeded``,
         ``NoOrientation`` or ``BadGeometry``.
+
+    Examples
+    --------
+    >>> import nrrd
+    >>> space = {"space": "RAS", "space directions": np.diag([2.0, 2, 3]), "space origin": np.zeros(3)}
+    >>> nrrd.write("scan.nrrd", np.zeros((4, 5, 6), np.int16), space)
+    >>> with open("scan.nrrd", "rb") as stream:
+    ...     image = read_nrrd(stream)
+    >>> image.raw.shape, image.affine.diagonal()
+    ((4, 5, 6), array([-2., -2.,  3.,  1.]))
     """
+    # three axes in space; others may hold one sample only
     header = _header(stream)
     sizes = [int(n) for n in header["sizes"]]
     directions = _directions(header, len(sizes))
     space = [i for i, row in enumerate(directions) if row is not None] if directions else list(range(len(sizes)))
     if len(space) != 3 and any(size != 1 for size in sizes[3:]):
-        spatial_shape(sizes)
+        check_shape(sizes)
     if directions and (len(space) != 3 or any(sizes[i] != 1 for i in range(len(sizes)) if i not in space)):
         raise _unsupported(f"has {len(space)} axes in space and others besides", "BadShape")
-    shape = spatial_shape([sizes[i] for i in space])
+    shape = check_shape([sizes[i] for i in space])
+
+    # as many voxels as the header declares
     dtype = _dtype(header)
     content, rest = _voxel_bytes(stream, header, int(np.prod(shape)) * dtype.itemsize)
     raw = np.frombuffer(content, dtype)
@@ -70,6 +94,7 @@ def read_nrrd(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
 
 
 def _header(stream: BinaryIO) -> dict[str, Any]:
+    """The fields of the header, and the stream at the first voxel."""
     import nrrd
 
     try:
@@ -84,6 +109,8 @@ def _header(stream: BinaryIO) -> dict[str, Any]:
         raise
     except Exception as error:
         raise _corrupt(f"its header cannot be parsed ({type(error).__name__})") from None
+
+    # damage that the parser lets pass
     start = stream.tell()
     stream.seek(0)
     lines = [line for line in stream.read(start).split(b"\n") if not line.startswith(b"#") and b":=" not in line]
@@ -100,6 +127,7 @@ def _header(stream: BinaryIO) -> dict[str, Any]:
 def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[bytearray, list[Finding]]:
     """The declared bytes of voxels, and a remark where there are more."""
     encoding = str(header["encoding"]).lower()
+    # what is skipped or coded otherwise would be misread
     skips = [int(header.get(name, 0)) for name in ("line skip", "lineskip", "byte skip", "byteskip")]
     if encoding not in _ENCODINGS or any(skips):
         what = "skips lines or bytes" if any(skips) else f"has the encoding {_plain(encoding)}"
@@ -116,6 +144,7 @@ def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[
 
 
 def _dtype(header: dict[str, Any]) -> np.dtype:
+    """Type and byte order of the voxels."""
     name = str(header["type"]).lower().strip()
     if name not in _DTYPES:
         raise _unsupported(f"has voxels of the type {_plain(name)}", "UnsupportedPixels")
@@ -128,6 +157,7 @@ def _dtype(header: dict[str, Any]) -> np.dtype:
 
 def _directions(header: dict[str, Any], dimension: int) -> list[NDArray[np.float64] | None]:
     """One vector per axis, None for an axis outside space; empty where the file has none."""
+    # rows of nan belong to axes outside space
     rows = header.get("space directions")
     if rows is None:
         return []
@@ -148,6 +178,8 @@ def _affine(
             raise no_orientation("The file states no anatomical space with directions: it does not say where left is.")
         message = "The file has no orientation: its axes were taken as left, back and top."
         findings.append(Finding("NoOrientation", "warning", message, {}))
+
+    # columns of the affine: one step along each axis, in the file's own frame and unit
     signs = signs or (1, 1, 1)
     if directions is None:
         spacings = header.get("spacings", (np.nan,) * 3)
@@ -157,6 +189,8 @@ def _affine(
     origin = header.get("space origin")
     if origin is None:
         findings.append(Finding("NoOrigin", "warning", "The file states no origin: (0, 0, 0) was taken.", {}))
+
+    # mm, LPS
     affine = np.eye(4)
     affine[:3, :3], affine[:3, 3] = columns, np.zeros(3) if origin is None else np.asarray(origin, float)
     affine[:3] *= _unit(header)
@@ -173,6 +207,7 @@ def _unit(header: dict[str, Any]) -> float:
 
 
 def _plain(text: str) -> str:
+    """A word of the file, cut down to characters that are safe to show."""
     return "".join(c for c in text if c.isascii() and (c.isalnum() or c in " -_"))[:24]
 
 

@@ -196,7 +196,7 @@ def _vertex_areas(mesh: Mesh) -> NDArray[np.float64]:
 def _thin(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Neighbourhood of the places where the patch or the space around it is less than two voxels wide.
 
-    Only there do the boxes of half a voxel leave the surface room to pass through itself.
+    Only there can the surface pass through itself within the boxes of half a voxel.
     """
     cube = np.ones((2, 2, 2), bool)
     wide = np.pad(inside, 2)

@@ -15,6 +15,7 @@ import hashlib
 import os
 import re
 import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -70,14 +71,9 @@ def build(folder: Path, only: str = "") -> list[Path]:
         ``NoLessons``; ``BadLesson`` where a text breaks the rules above or a cell fails.
     """
     made = []
-    for source in _sources(folder, only):
-        lesson = execute(read(source))
-        for path, notebook in (
-            (folder / f"{source.stem}.ipynb", lesson),
-            (folder / "exercises" / f"{source.stem}.ipynb", exercise_copy(lesson)),
-        ):
-            _write(path, notebook)
-            made.append(path)
+    for path, notebook in _notebooks(folder, only):
+        _write(path, notebook)
+        made.append(path)
     return made
 
 
@@ -91,24 +87,39 @@ def out_of_step(folder: Path, only: str = "") -> list[str]:
     ----------
     folder, only
         As for `build`.
+
+    Returns
+    -------
+    list of str
+        Empty where all is in step.
     """
     problems = []
-    for source in _sources(folder, only):
-        lesson = execute(read(source))
-        for path, wanted in (
-            (folder / f"{source.stem}.ipynb", lesson),
-            (folder / "exercises" / f"{source.stem}.ipynb", exercise_copy(lesson)),
-        ):
-            name = path.relative_to(folder)
-            if not path.is_file():
-                problems.append(f"{name} is missing")
-            elif _comparable(nbformat.read(path, as_version=4)) != _comparable(wanted):
-                problems.append(f"{name} is not what its text gives; run `cranio-nb lessons build`")
+    for path, wanted in _notebooks(folder, only):
+        name = path.relative_to(folder)
+        if not path.is_file():
+            problems.append(f"{name} is missing")
+        elif _comparable(nbformat.read(path, as_version=4)) != _comparable(wanted):
+            problems.append(f"{name} is not what its text gives; run `cranio-nb lessons build`")
     return problems
 
 
 def read(source: Path) -> NotebookNode:
-    """A lesson text as a notebook without outputs, with a cell for Colab; ids follow from the cells' text."""
+    """A lesson text as a notebook without outputs, with a cell for Colab; ids follow from the cells' text.
+
+    Parameters
+    ----------
+    source : path
+        A script in Jupytext's percent format.
+
+    Returns
+    -------
+    NotebookNode
+
+    Raises
+    ------
+    InputRefused
+        ``BadLesson`` where a solution is not one function with a docstring.
+    """
     notebook = jupytext.read(source, fmt="py:percent")
     cells = [
         (new_markdown_cell if cell.cell_type == "markdown" else new_code_cell)(
@@ -122,6 +133,16 @@ def read(source: Path) -> NotebookNode:
 
 def execute(notebook: NotebookNode) -> NotebookNode:
     """The notebook with its outputs, run from the first cell to the last in a fresh kernel in static mode.
+
+    Parameters
+    ----------
+    notebook : NotebookNode
+        As `read` gives it.
+
+    Returns
+    -------
+    NotebookNode
+        The same one.
 
     Raises
     ------
@@ -152,9 +173,23 @@ def execute(notebook: NotebookNode) -> NotebookNode:
 
 
 def points(path: Path) -> dict[str, tuple[int, int]]:
-    """Run a notebook that a student hands in, and read off its checks: exercise -> (points, points to be had).
+    """Run a notebook that a student hands in, and read off its checks.
 
     Cells that fail count for nothing and do not stop the rest.
+
+    Parameters
+    ----------
+    path : path
+
+    Returns
+    -------
+    dict of str to (int, int)
+        Number of the exercise -> points, and points to be had.
+
+    Raises
+    ------
+    InputRefused
+        ``NotFound``.
     """
     if not path.is_file():
         raise InputRefused("NotFound", f"There is no notebook {path.name}.")
@@ -173,7 +208,17 @@ def points(path: Path) -> dict[str, tuple[int, int]]:
 
 
 def exercise_copy(lesson: NotebookNode) -> NotebookNode:
-    """The copy that a student fills in: stubs for solutions, no outputs, expected pictures and answers folded away."""
+    """The copy that a student fills in: stubs for solutions, no outputs, expected pictures and answers folded away.
+
+    Parameters
+    ----------
+    lesson : NotebookNode
+        Executed.
+
+    Returns
+    -------
+    NotebookNode
+    """
     first, *rest = lesson.cells
     cells = [new_markdown_cell(first.source), new_markdown_cell(_TO_STUDENTS)]
     solution = ""
@@ -194,11 +239,34 @@ def exercise_copy(lesson: NotebookNode) -> NotebookNode:
 
 
 def tags(cell: NotebookNode) -> list[str]:
-    """Tags of a cell."""
+    """Tags of a cell.
+
+    Parameters
+    ----------
+    cell : NotebookNode
+
+    Returns
+    -------
+    list of str
+
+    Examples
+    --------
+    >>> tags(new_code_cell("1 / 0", metadata={"tags": ["raises-exception"]}))
+    ['raises-exception']
+    """
     return list(cell.metadata.get("tags", []))
 
 
+def _notebooks(folder: Path, only: str) -> Iterator[tuple[Path, NotebookNode]]:
+    """Each lesson as its text gives it now, executed, and its copy for students, with the files they belong in."""
+    for source in _sources(folder, only):
+        lesson = execute(read(source))
+        yield folder / f"{source.stem}.ipynb", lesson
+        yield folder / "exercises" / f"{source.stem}.ipynb", exercise_copy(lesson)
+
+
 def _sources(folder: Path, only: str) -> list[Path]:
+    """The texts of a folder, in the order of their names."""
     found = sorted((folder / "src").glob(f"{only}*.py"))
     if not found:
         message = f"No lesson texts were found in {folder.name}/src."

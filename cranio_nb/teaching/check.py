@@ -46,7 +46,12 @@ class Verdict:
 
     @property
     def passed(self) -> bool:
-        """Whether every case is right."""
+        """Whether every case is right.
+
+        Returns
+        -------
+        bool
+        """
         return self.out_of > 0 and self.points == self.out_of
 
     def __repr__(self) -> str:
@@ -69,6 +74,11 @@ def exercise(name: str, answer: Callable[..., Any], *, hint: int = 0) -> Verdict
     Returns
     -------
     Verdict
+
+    Examples
+    --------
+    >>> exercise("4.1", lambda k, n: k * n**2 / 8)
+    Exercise 4.1: 0 of 3 points. N counts the steps between snaxels: N = n - 1. (Ask for a hint with hint=1.)
     """
     task = EXERCISES.get(str(name))
     if task is None:
@@ -82,6 +92,7 @@ def _judge(task: Exercise, answer: Any, cases: list[tuple[Any, ...]]) -> tuple[i
     """Points, and what to say about the answer."""
     if not callable(answer):
         return 0, f"A function is wanted, and this is a {type(answer).__name__}: give its name without brackets."
+    # the answer to each case, on copies
     found = []
     for case in cases:
         given = copy.deepcopy(case)
@@ -95,6 +106,7 @@ def _judge(task: Exercise, answer: Any, cases: list[tuple[Any, ...]]) -> tuple[i
             return 0, "The function changes the array it is given; work on a copy."
     if all(value is None for value in found):
         return 0, "The function returns nothing: is there a `return`?"
+    # a point for each that is near enough to the right one
     errors = [_error(task, value, task.right(*case)) for value, case in zip(found, cases, strict=True)]
     points = sum(error <= task.tolerance for error in errors)
     return points, _say(task, cases, found, errors)

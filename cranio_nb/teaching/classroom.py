@@ -1,4 +1,4 @@
-"""What the lessons share: the case they work on, and pictures that carry a description.
+"""What the lessons work on: a synthetic head or somebody's own scan, a slice of it, folders to write to.
 
 Frames: a lesson's slices are (row, col) px of one plane of the scan; `LessonCase.px` is the size of a pixel in mm.
 
@@ -9,16 +9,17 @@ somebody's own scan there is no truth, and what is drawn or measured against it 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+import shutil
+import tempfile
 from contextlib import suppress
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
+from skimage.morphology import skeletonize
 
-from ..drawing import figures
-from ..drawing.described import described
 from ..errors import InputRefused
 from ..opening import Opening
 from ..readers import read_ct
@@ -27,17 +28,6 @@ from ..volume import Volume
 
 if TYPE_CHECKING:
     from data_synth import Case, Gap
-
-    from ..drawing.figures import Axes, Figure
-
-LINES = (
-    (figures.BLUE, "-"),
-    (figures.VERMILLION, "--"),
-    (figures.GREEN, "-."),
-    (figures.PURPLE, ":"),
-    (figures.BLACK, "-"),
-)
-"""Colour and style of the first, second, ... curve of a picture: told apart without colour as well."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,15 +50,41 @@ class LessonCase:
 
     @property
     def px(self) -> float:
-        """Size of a pixel of a slice, mm."""
+        """Size of a pixel of a slice.
+
+        Returns
+        -------
+        float
+            mm.
+        """
         return float(self.ct.spacing[1:].mean())
 
     def true_curves(self, plane: int) -> tuple[NDArray[np.float64], ...]:
-        """Closed-form outer and inner curve across the widest gap of a plane, (row, col) px; empty where unknown."""
+        """Closed-form curves across the widest gap of a plane.
+
+        Parameters
+        ----------
+        plane : int
+
+        Returns
+        -------
+        tuple of ndarray, shape (n, 2)
+            Outer and inner curve, (row, col) px; empty where they are not known.
+        """
         return tuple(gap.curve for gap in self._widest(plane))
 
     def true_angles(self, plane: int) -> tuple[NDArray[np.float64], ...]:
-        """Closed-form (theta0, theta1) of the outer and the inner gap of a plane, degrees; empty where unknown."""
+        """Closed-form end angles of the widest gap of a plane.
+
+        Parameters
+        ----------
+        plane : int
+
+        Returns
+        -------
+        tuple of ndarray, shape (2,)
+            (theta0, theta1) of the outer and of the inner gap, degrees; empty where they are not known.
+        """
         return tuple(gap.angles for gap in self._widest(plane))
 
     def _widest(self, plane: int) -> tuple[Gap, ...]:
@@ -103,6 +119,10 @@ def load(
     needs_truth : bool
         Whether the lesson makes no sense without a truth.
 
+    Returns
+    -------
+    LessonCase
+
     Raises
     ------
     InputRefused
@@ -123,11 +143,55 @@ def load(
 
         ct = read_ct(path)[0]
         return LessonCase(ct, read_truth(known, ct) if known else None, None)
+    return synthetic(os.environ.get("CRANIO_NB_SIZE") or size, defect, seed)
+
+
+def synthetic(size: str = "class", defect: str = "unilateral", seed: int = 0, **scanner: Any) -> LessonCase:
+    """A synthetic head as a lesson's case, whatever the environment names.
+
+    Parameters
+    ----------
+    size : {"tiny", "class", "full"}
+    defect : str
+        A key of `data_synth.DEFECTS`.
+    seed : int
+    **scanner
+        Further options of `data_synth.phantom_case`, e.g. ``couch=True`` or ``tilt_deg=15.0``.
+
+    Returns
+    -------
+    LessonCase
+
+    Examples
+    --------
+    >>> case = synthetic("tiny")
+    >>> case.ct.shape, case.truth.voxels.any()
+    ((44, 128, 128), np.True_)
+    """
     from data_synth import phantom_case
 
-    case = phantom_case(os.environ.get("CRANIO_NB_SIZE") or size, defect, seed)
+    case = phantom_case(size, defect, seed, **scanner)
     assert case.hu is not None
     return LessonCase(Volume(case.hu, case.affine), Volume(case.implant, case.affine), case)
+
+
+def scratch_folder(copy_of: str | os.PathLike[str] | None = None) -> Path:
+    """A folder to write to, in a new place of its own.
+
+    Parameters
+    ----------
+    copy_of : path, optional
+        A folder whose files it gets.
+
+    Returns
+    -------
+    Path
+        Named ``ct``; it is there only where something was copied.
+    """
+    folder = Path(tempfile.mkdtemp()) / "ct"
+    if copy_of is not None:
+        shutil.copytree(copy_of, folder)
+    return folder
 
 
 def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: float) -> int:
@@ -139,7 +203,12 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: f
         Bool mask.
     opening : Opening
     skip_px, reach_px : float
-        As for `feature_extraction.find_gap_ends`.
+        As for `feature_extraction.find_gap_ends`, px.
+
+    Returns
+    -------
+    int
+        Index of the plane.
 
     Raises
     ------
@@ -159,74 +228,47 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: f
     )
 
 
-picture = described
-"""A figure with its description and its line of numbers: the last line of a cell."""
+def skeleton(mask: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """The raw skeleton of a mask, forks and spurs included; `feature_extraction` keeps the longest path through it.
+
+    Parameters
+    ----------
+    mask : ndarray of bool, shape (R, C)
+
+    Returns
+    -------
+    ndarray of int, shape (n, 2)
+        (row, col) px.
+
+    Examples
+    --------
+    >>> skeleton(np.eye(3, dtype=bool)).tolist()
+    [[0, 0], [1, 1], [2, 2]]
+    """
+    return np.argwhere(skeletonize(np.array(mask)))  # a copy: it takes no read-only array
 
 
-def axes(n: int = 1, *, height: float = 3.4, width: float = 9.0) -> tuple[Figure, list[Axes]]:
-    """A figure with `n` axes side by side, of given inches in all."""
-    figure, _ = figures.new_figure(width, height)
-    figure.clear()
-    figure.set_layout_engine("constrained")
-    return figure, list(figure.subplots(1, n, squeeze=False)[0])
+def distance_to_curve(points: NDArray[np.float64], curve: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance of points to the nearest place of a curve, on its points or between them.
 
+    Parameters
+    ----------
+    points : ndarray, shape (m, d)
+    curve : ndarray, shape (n, d)
+        A polyline, n > 1, no two neighbours alike.
 
-def show_hu(ax: Axes, hu: NDArray, *, px: float, centre: float = 300.0, width: float = 2000.0, title: str = "") -> None:
-    """Draw a slice of HU, shape (R, C), in greys from centre - width / 2 to centre + width / 2; axes in mm."""
-    low, high = centre - width / 2, centre + width / 2
-    ax.imshow(hu, cmap="gray", vmin=low, vmax=high, extent=_extent(hu.shape, px), interpolation="nearest")
-    _label(ax, title)
+    Returns
+    -------
+    ndarray, shape (m,)
+        In the unit of the points.
 
-
-def show_mask(ax: Axes, mask: NDArray[np.bool_], *, px: float, colour: str = figures.BONE, title: str = "") -> None:
-    """Draw a mask, shape (R, C), in one colour over what is there; axes in mm."""
-    rgba = np.zeros((*mask.shape, 4))
-    rgba[mask] = [*(int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)), 1.0]
-    ax.imshow(rgba, extent=_extent(mask.shape, px), interpolation="nearest")
-    _label(ax, title)
-
-
-def show_points(ax: Axes, points: ArrayLike, *, px: float, colour: str, marker: str = ".", label: str = "") -> None:
-    """Draw points, (row, col) px of shape (n, 2), on a slice."""
-    row, col = np.asarray(points, float).reshape(-1, 2).T * px
-    ax.plot(col, row, ls="none", marker=marker, ms=3 if marker == "." else 6, color=colour, label=label or None)
-
-
-def show_curve(ax: Axes, points: ArrayLike, *, px: float, line: int = 0, label: str = "") -> None:
-    """Draw a curve, (row, col) px of shape (n, 2), on a slice in the style `LINES[line]`."""
-    row, col = np.asarray(points, float).reshape(-1, 2).T * px
-    colour, style = LINES[line]
-    ax.plot(col, row, ls=style, lw=1.8, color=colour, label=label or None)
-
-
-def show_tangents(ax: Axes, points: ArrayLike, tangents: ArrayLike, *, px: float, length: float = 14.0) -> None:
-    """Draw gap ends as rings and their tangents, both (row, col) of shape (n, 2), as arrows of `length` mm."""
-    for point, tangent in zip(np.asarray(points, float) * px, np.asarray(tangents, float), strict=True):
-        tip = point + length * tangent
-        ax.annotate("", tip[::-1], point[::-1], arrowprops={"arrowstyle": "-|>", "color": figures.GREEN, "lw": 1.6})
-        ax.plot(*point[::-1], marker="o", ms=6, mfc="white", mec=figures.BLACK)
-
-
-def zoom(ax: Axes, points: Iterable[ArrayLike], *, px: float, margin: float = 15.0) -> None:
-    """Show only what lies within `margin` mm of the points, (row, col) px; call it last."""
-    every = np.concatenate([np.asarray(p, float).reshape(-1, 2) for p in points]) * px
-    (top, left), (bottom, right) = every.min(axis=0) - margin, every.max(axis=0) + margin
-    ax.set(xlim=(left, right), ylim=(bottom, top))
-
-
-def plot_lines(ax: Axes, x: ArrayLike, ys: dict[str, ArrayLike], *, xlabel: str, ylabel: str, title: str = "") -> None:
-    """Draw named curves over the same x, with a legend, in colours and styles that all can tell apart."""
-    for (name, y), (colour, style) in zip(ys.items(), LINES, strict=False):
-        ax.plot(x, y, color=colour, ls=style, label=name)
-    ax.set(xlabel=xlabel, ylabel=ylabel, title=title)
-    ax.grid(alpha=0.3)
-    ax.legend(fontsize=8)
-
-
-def _extent(shape: tuple[int, ...], px: float) -> tuple[float, float, float, float]:
-    rows, cols = shape
-    return (-0.5 * px, (cols - 0.5) * px, (rows - 0.5) * px, -0.5 * px)
-
-
-def _label(ax: Axes, title: str) -> None:
-    ax.set(xlabel="mm", ylabel="mm", title=title, aspect="equal")
+    Examples
+    --------
+    >>> distance_to_curve(np.array([[1.0, 2.0], [7.0, 4.0]]), np.array([[0.0, 0.0], [4.0, 0.0]])).tolist()
+    [2.0, 5.0]
+    """
+    start, step = curve[:-1], np.diff(curve, axis=0)
+    # foot of each point on each segment: along it by a share of 0 to 1
+    away = points[:, None] - start
+    share = np.clip((away * step).sum(axis=-1) / (step**2).sum(axis=-1), 0.0, 1.0)
+    return np.asarray(np.linalg.norm(away - share[..., None] * step, axis=-1).min(axis=1))

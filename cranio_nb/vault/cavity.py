@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused
+from ..grid import move_affine
 from ..volume import Volume
 
 _BLOCK_MM = 4.0  # side of the blocks the head is looked at in: closes sutures and thin bone
@@ -56,7 +57,7 @@ def coarse_bone(bone: Volume, side_mm: float = _BLOCK_MM) -> Volume:
             more = layers[i::n]
             blocks[: len(more)] |= more
         voxels = np.moveaxis(blocks, 0, axis)
-    return Volume(voxels, bone.affine_from((step - 1) / 2, step))
+    return Volume(voxels, move_affine(bone.affine, (step - 1) / 2, step))
 
 
 def enclosed(bone: NDArray[np.bool_]) -> NDArray[np.int8]:

@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, optimize
 
+from ..errors import InputRefused
 from ..volume import Volume
 from .cavity import cavity_ball, coarse_bone
 from .orientation import head_axes
@@ -38,6 +39,10 @@ _BROW_WEIGHTS = (0.12, 0.67, -0.87, 3.24)  # Fisher's discriminant of front and 
 _BROW_SURE = 4.0  # of the same sum
 _ASYMMETRY_MM = 1.5  # mean misfit up to which a midline is a midline
 _SURE = 0.5
+_END = np.cos(np.radians(30.0))  # rays so near to straight up or down
+_FORAMEN = 0.05  # share of them that leave through the foramen magnum
+_NO_FACE = "No face is in sight; the scan's own axes are used."
+_TURNED_OVER = "No face is in sight; the end called base is closed and the end called top is open, as a base is."
 _AGREE = "Face, midline and cavity agree on how the head lies."
 _DISAGREE = "A face is in sight, but the signs of how the head lies disagree."
 _SPREAD_DEG = 12.0  # median distance of the three from their median at which they count half
@@ -146,10 +151,7 @@ def find_head_frame(bone: Volume) -> HeadFrame:
     centre, _ = cavity_ball(coarse)
     walls = measure_walls(local, centre)
     if np.linalg.norm(walls.face) < _FACE_MM:
-        middle = bone.to_world(local.to_voxel(centre))
-        return HeadFrame(
-            middle, grid_axes, grid_axes, 0.0, np.nan, np.nan, "No face is in sight; the scan's own axes are used."
-        )
+        return _without_face(walls, bone.to_world(local.to_voxel(centre)), grid_axes)
     normal, shift, asymmetry = _midline(coarse, centre, walls.face)
     centre = centre + shift * normal
     axes, spread, brow = _nod(measure_walls(local, centre), normal)
@@ -161,10 +163,19 @@ def find_head_frame(bone: Volume) -> HeadFrame:
     )
 
 
+def _without_face(walls: Walls, centre: Array, grid_axes: Array) -> HeadFrame:
+    """The scan's own axes, turned over where bone closes the end called base and not the one called top."""
+    open_ends = [np.isnan(walls.first)[side * walls.directions[:, 2] > _END].mean() for side in (1, -1)]
+    if open_ends[1] > 0 or open_ends[0] < _FORAMEN:
+        return HeadFrame(centre, grid_axes, grid_axes, 0.0, np.nan, np.nan, _NO_FACE)
+    turned = grid_axes * np.array([[1.0], [-1.0], [-1.0]])
+    return HeadFrame(centre, turned, grid_axes, _SURE, np.nan, np.nan, _TURNED_OVER)
+
+
 def _on_own_axes(bone: Volume, grid_axes: Array) -> Volume:
     """The same voxels with their axes along the coordinates and at the origin, whatever the header turns and shifts."""
-    affine = np.eye(4)
-    affine[:3, :3] = np.round(grid_axes @ bone.affine[:3, :3], 9)
+    affine = np.pad(np.round(grid_axes @ bone.edges.T, 9), (0, 1))
+    affine[3, 3] = 1.0
     return Volume(bone.voxels, affine)
 
 
@@ -318,3 +329,22 @@ def _long_axis(walls: Walls, normal: Array, face: Array, ahead: Array) -> float:
         kept = off < np.quantile(off, 0.8)
     across = np.linalg.eigh(np.array([[c[1], c[3] / 2], [c[3] / 2, c[2]]]))[1][:, 0]
     return float(np.degrees(np.arctan2(across[0], across[1])) % 180)
+
+
+def head_or_grid_axes(bone: Volume) -> Array:
+    """The head's axes where the bone shows them, else those of the grid.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+
+    Returns
+    -------
+    ndarray, shape (3, 3)
+        Rows: left, back and up, orthonormal, world.
+    """
+    try:
+        return find_head_frame(bone).trusted_axes
+    except InputRefused:
+        return head_axes(bone)

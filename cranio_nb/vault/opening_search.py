@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused, NoOpening
+from ..grid import inside_grid
 from ..opening import Opening
-from ..volume import Volume, inside_grid
+from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
 from .orientation import head_centre
 from .ray_casting import FAR_MM, NEAR_MM
@@ -117,6 +118,13 @@ def find_openings(bone: Volume, *, ct: Volume | None = None, min_diameter_mm: fl
     InputRefused
         ``OpeningLeavesImage`` when an opening reaches the edge of the image, so that part of its rim is missing;
         ``NoVault`` when the mask holds no skull vault.
+
+    Examples
+    --------
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "multiple", 0)
+    >>> len(find_openings(Volume(case.bone, case.affine)))
+    3
     """
     return tuple(one.opening for one in require_cut(survey_openings(bone, ct=ct, min_diameter_mm=min_diameter_mm)))
 
@@ -227,6 +235,7 @@ def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> Outermost
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / _STEP_DEG))
     grid = RayGrid(head_centre(bone, axes), axes, np.radians(_STEP_DEG), 2 * half + 1)
     directions = grid.directions
+    # outwards: the last bone met stays
     start, step = bone.to_voxel(grid.centre), bone.steps(directions)
     radius, last_inside = np.full(directions.shape[:2], np.nan), np.zeros(directions.shape[:2])
     for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM):

@@ -50,7 +50,7 @@ def head_centre(bone: Volume, axes: NDArray[np.float64] | None = None) -> NDArra
     low, high = np.quantile(vault[:, :2], [0.005, 0.995], axis=0)
     if (high - low).min() < _LEAST:
         raise no_vault
-    return bone.affine[:3, 3] + np.array([*(low + high) / 2, top - _DEPTH]) @ turn @ grid_axes
+    return bone.to_world(np.zeros(3)) + np.array([*(low + high) / 2, top - _DEPTH]) @ turn @ grid_axes
 
 
 def head_axes(bone: Volume) -> NDArray[np.float64]:
@@ -78,5 +78,5 @@ def _thinned_points(bone: Volume, grid_axes: NDArray[np.float64]) -> NDArray[np.
     """Positions of every few bone voxels from the grid's first, along its left, back and up, shape (n, 3), mm."""
     step = np.maximum(1, np.round(_THINNED / bone.spacing)).astype(int)
     coarse = bone.voxels[:: step[0], :: step[1], :: step[2]]
-    own = np.round(grid_axes @ bone.affine[:3, :3], 9)  # the same whatever the header turns
+    own = np.round(grid_axes @ bone.edges.T, 9)  # the same whatever the header turns
     return (np.argwhere(coarse) * step) @ own.T

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..volume import Volume
-from .orientation import head_axes
+from .head_frame import head_or_grid_axes
 from .ray_casting import FAR_MM, NEAR_MM
 from .ray_grid import RayGrid
 
@@ -53,7 +53,7 @@ class OuterSurface:
         -------
         ndarray of bool, shape (n, n)
         """
-        return np.isfinite(self.normals).all(axis=-1)
+        return np.asarray(np.isfinite(self.normals).all(axis=-1))
 
     @cached_property
     def interior(self) -> Array:
@@ -91,6 +91,7 @@ class OuterSurface:
         normals : ndarray, shape (k, 3)
             Of the surface where the points' rays meet it.
         """
+        # radius and normal where each point's own ray meets the surface
         at = self.grid.locate(offsets)
         radius, *normal = (
             ndimage.map_coordinates(values, at, order=1, cval=np.nan)
@@ -117,7 +118,7 @@ def measure_outer_surface(bone: Volume, centre: Array) -> OuterSurface:
     OuterSurface
     """
     half = int(np.ceil(COMPARED_RAD / _STEP_RAD)) + _RIM + 2
-    grid = RayGrid(np.asarray(centre, float), head_axes(bone), _STEP_RAD, 2 * half + 1)
+    grid = RayGrid(np.asarray(centre, float), head_or_grid_axes(bone), _STEP_RAD, 2 * half + 1)
     raw, directions = np.full((grid.n, grid.n), np.nan), grid.directions
     inside = grid.polar <= COMPARED_RAD + (_RIM + 1) * _STEP_RAD
     raw[inside] = outermost_edge(bone, grid.centre, directions[inside])

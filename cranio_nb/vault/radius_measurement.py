@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..geometry.robust import huber_weights, reweighted_fit, spread
+from ..grid import inside_grid
 from ..opening import Opening
-from ..volume import Volume, inside_grid
+from ..volume import Volume
 from .ray_casting import expected_radius, surface_radii
 from .ray_grid import RadiusMap, RayGrid
 
@@ -128,7 +129,8 @@ def _usual_thickness(thickness: NDArray[np.float64], around: NDArray[np.bool_]) 
     v, u = np.nonzero(around)
     if len(v) < 10:
         return np.full(thickness.shape, np.nanmedian(thickness))
-    basis = np.stack([np.ones(len(v)), v, u], axis=1)
+    # thickness = a + b v + c u
+    basis = np.stack([np.ones(len(v)), v, u], axis=1).astype(float)
     plane = reweighted_fit(
         basis, thickness[v, u], lambda off: huber_weights(off, spread(off) + 1e-6), start=np.ones(len(v)), n_iter=5
     )

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ..volume import Volume, nearest_values
+from ..grid import box_around, nearest_values
+from ..volume import Volume
 from .ray_grid import RadiusMap, filled_from_nearest
 
 _FILM_MM = 0.75  # on the bone beside a hole that nobody would build
@@ -45,7 +46,7 @@ def voxels_between(
     # only a box around the prosthesis is filled
     directions = radius_map.grid.directions[region]
     ends = np.concatenate([radius_map.grid.centre + directions * r[region][:, None] for r in (top, bottom)])
-    box = bone.box_around(bone.to_voxel(ends), margin=1)
+    box = box_around(bone.to_voxel(ends), bone.shape, margin=1)
     patch = np.zeros(bone.shape, bool)
     patch[box] = _between(radius_map, region, bone.crop(box), outer=top, inner=bottom) & ~bone.voxels[box]
     return patch

@@ -15,6 +15,7 @@ from scipy import ndimage
 
 from ..geometry.robust import cauchy_weights, reweighted_fit
 from ..geometry.slice_distance import plane_distances
+from ..grid import box_around
 from ..volume import Volume
 
 NEAR_MM, FAR_MM = 25.0, 140.0
@@ -23,7 +24,7 @@ _DEPTH_MM, _HEIGHT_MM = 16.0, 12.0  # below and above the expected outer surface
 _SAMPLE_MM = 0.4  # along a ray
 _FAR_APART_MM = 1.5  # between planes above which their stairs would show
 _BREAK_MM = 3.0  # without bone along a ray that is still diploe
-_DISTANCE_BOUND_PX = 8.0
+_BOUND_PX = 8.0  # up to which distances to an edge in a plane are told apart
 _EVERY = 4  # rays of the map from one that the coarse pass follows to the next
 _STRAY_MM = 4.0  # off the fit by which an outermost voxel counts half
 _FADE_DEG = 25.0  # from where the fit matters most to where a ray counts a third
@@ -77,6 +78,7 @@ def expected_radius(
 def _robust_surface(v: NDArray, u: NDArray, values: NDArray, weight: NDArray):
     """Fourth-order polynomial in (v, u) fitted with outliers down-weighted, as a function."""
     powers = [(i, j) for i in range(5) for j in range(5 - i)]
+    # terms v^i u^j with i + j <= 4
     known = np.isfinite(values)
     basis = np.stack([v[known] ** i * u[known] ** j for i, j in powers], axis=-1)
     base = np.sqrt(weight[known])
@@ -112,6 +114,7 @@ def surface_radii(
     outer, inner : ndarray, shape (...)
         mm, between voxels; nan where a ray meets no bone.
     """
+    # samples about the expected surface, a few hundred rays at a time
     rays, level = directions.reshape(-1, 3), expected.ravel()
     field = _field(bone, centre, rays[::8], level[::8])
     offsets = np.arange(-_DEPTH_MM, _HEIGHT_MM, _SAMPLE_MM)
@@ -128,17 +131,14 @@ def surface_radii(
 def _field(bone: Volume, centre: NDArray, rays: NDArray, level: NDArray) -> Volume:
     """The bone around the ends of rays as a field with its surface at 0.5."""
     ends = np.concatenate([centre + rays * (level + d)[:, None] for d in (-_DEPTH_MM, _HEIGHT_MM)])
-    part = bone.crop(bone.box_around(bone.to_voxel(ends), margin=2))
-    far_apart = bone.spacing[0] > _FAR_APART_MM
-    return Volume(_distance_field(part.voxels) if far_apart else part.voxels.astype(np.float32), part.affine)
-
-
-def _distance_field(mask: NDArray[np.bool_]) -> NDArray[np.float32]:
-    """Distances to the edge in each plane, px: 1 on its inside and 0 on its outside; bone ends with the box."""
-    beside = ((0, 0), (1, 1), (1, 1))
-    field = plane_distances(np.pad(mask, beside), _DISTANCE_BOUND_PX)[:, 1:-1, 1:-1] + np.where(mask, 0.0, 1.0)
-    field[~mask.any(axis=(1, 2))] = 0.5 - _DISTANCE_BOUND_PX
-    return field.astype(np.float32)
+    part = bone.crop(box_around(bone.to_voxel(ends), bone.shape, margin=2))
+    if bone.spacing[0] <= _FAR_APART_MM:
+        return Volume(part.voxels.astype(np.float32), part.affine)
+    # distances to the edge in each plane, px: 1 on its inside and 0 on its outside; bone ends with the box
+    mask = np.pad(part.voxels, ((0, 0), (1, 1), (1, 1)))
+    field = (plane_distances(mask, _BOUND_PX) + np.where(mask, 0.0, 1.0))[:, 1:-1, 1:-1]
+    field[~part.voxels.any(axis=(1, 2))] = 0.5 - _BOUND_PX
+    return Volume(field.astype(np.float32), part.affine)
 
 
 def _nearest_run(values: NDArray, offsets: NDArray) -> tuple[NDArray, NDArray]:

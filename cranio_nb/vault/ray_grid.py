@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ..volume import nearest_values
+from ..grid import nearest_values
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -3,7 +3,7 @@
 Frames: slice (row, col), and polar (angle, radius) about a centre inside the head; angle 0 points up the slice
 (against the rows) and grows towards the columns. Lengths in the unit of the slice.
 
-The skeleton of a real slice forks, loops and runs into the skull base. Seen from inside the head the vault is one
+The skeleton of a real slice forks, loops and runs into the skull base. Along rays from inside the head the vault is one
 radius per direction instead: outer surface, inner surface, and a gap. Boundary points are still left out near the
 rim (`skip`) and fitted over a neighbourhood (`reach`), both arc lengths as in the paper.
 """
@@ -42,7 +42,13 @@ class RayProfile:
 
     @property
     def gap(self) -> NDArray[np.intp]:
-        """First and last missing ray of each slice, shape (P, 2); -1 where there is none."""
+        """First and last missing ray of each slice.
+
+        Returns
+        -------
+        ndarray of int, shape (P, 2)
+            -1 where there is none.
+        """
         first = self.missing.argmax(axis=1)
         last = self.missing.shape[1] - 1 - self.missing[:, ::-1].argmax(axis=1)
         return np.where(self.missing.any(axis=1, keepdims=True), np.stack([first, last], axis=1), -1)
@@ -92,15 +98,18 @@ def fit_rims(profile: RayProfile, *, skip: float, reach: float, order: int = 2, 
     t = np.linspace(0, 1, n_points)
     for boundary, radius in enumerate((profile.outer, profile.inner)):
         typical = np.nanmedian(radius)
+        # rays from the first fitted point on, as arc lengths on this boundary
         away = 1 + np.rint((skip + t * reach) / (typical * step)).astype(np.intp)
         for end, direction in enumerate((-1, 1)):
             rays = gap[good, end][:, None] + direction * away
             inside = (rays >= 0) & (rays < radius.shape[1])
             rays = np.clip(rays, 0, radius.shape[1] - 1)
             r = np.where(inside, radius[good[:, None], rays], np.nan)
+            # radius over angle, fitted; value and slope at the first fitted point
             x = np.broadcast_to((away - away[0]) * step * direction, r.shape)
             value, slope, bend = _robust_fit(x, r, order, noise=0.004 * typical)
             turns[good, boundary, end] = np.abs(2 * bend * x[:, -1] / value)
+            # position and tangent there, in the slice
             angle = profile.angles[rays[:, 0]]
             up = np.stack([-np.cos(angle), np.sin(angle)], axis=-1)
             onward = np.stack([np.sin(angle), np.cos(angle)], axis=-1)
@@ -121,11 +130,17 @@ def share_tangents(tangents: NDArray[np.float64], sigma: float) -> NDArray[np.fl
         Unit vectors; nan where unknown.
     sigma : float
         Standard deviation of the Gaussian and half width of the median, slices; 0 leaves them as they are.
+
+    Returns
+    -------
+    ndarray, shape (P, ..., 2)
+        Unit vectors; nan where unknown.
     """
     known = np.isfinite(tangents).all(axis=tuple(range(1, tangents.ndim)))
     if sigma <= 0 or not known.any():
         return tangents
     width = (min(2 * int(np.ceil(sigma)) + 1, int(known.sum())), *[1] * (tangents.ndim - 1))
+    # among known slices the median, over all of them the Gaussian, in which unknown ones weigh nothing
     shared = np.zeros(tangents.shape)
     shared[known] = ndimage.median_filter(tangents[known], size=width, mode="nearest")
     shared = ndimage.gaussian_filter1d(shared, sigma, axis=0, mode="constant")
@@ -135,11 +150,13 @@ def share_tangents(tangents: NDArray[np.float64], sigma: float) -> NDArray[np.fl
 
 def _robust_fit(x: NDArray, y: NDArray, order: int, noise: float) -> tuple[NDArray, NDArray, NDArray]:
     """Value, slope and half second derivative at x = 0 of a polynomial per row, shape (P,) each; Tukey's biweight."""
+    # powers of x in units of its range
     known = np.isfinite(y)
     scale = np.abs(x).max(axis=1, keepdims=True)
     basis = (x / scale)[..., None] ** np.arange(order + 1)
     y = np.where(known, y, 0.0)
     weight = known.astype(float)
+    # weighted least squares, weights by Tukey's biweight of the residuals
     for _ in range(6):
         weighted = basis * weight[..., None]
         normal = np.einsum("pni,pnj->pij", weighted, basis) + 1e-9 * np.eye(order + 1)

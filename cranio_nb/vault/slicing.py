@@ -1,7 +1,7 @@
-"""Along which planes an opening is cut: a chart of the vault comes in -> stacks of slices go out.
+"""Along which planes an opening is cut: a radius map of the vault comes in -> stacks of slices go out.
 
-Frames: slice (row, col) in mm about the eye, a point inside the head; a slice's `frame` takes it to the world (mm,
-LPS). Rays of a slice: angle 0 looks at the opening, against the rows, and grows towards the columns.
+Frames: slice (row, col) in mm about the head's centre; a slice's `frame` takes it to the world (mm,
+LPS). Rays of a slice: angle 0 points to the opening, against the rows, and grows towards the columns.
 
 The paper cuts axially and its opening is lateral. Near the vertex an axial slice is a cap, not a ring, and meets the
 rim at a flat angle. A fan of planes through a point inside the head cuts every opening as the paper's slices cut
@@ -27,7 +27,7 @@ _SIDE = 0.75  # radians of bone looked at on each side of the hole
 
 @dataclass(frozen=True, eq=False)
 class Fan:
-    """Planes that share a line through the eye.
+    """Planes that share a line through the head's centre.
 
     Parameters
     ----------
@@ -45,26 +45,70 @@ class Fan:
 
     @property
     def directions(self) -> NDArray[np.float64]:
-        """Unit vector of each ray of each slice, shape (P, K, 3), world."""
+        """Unit vector of each ray of each slice.
+
+        Returns
+        -------
+        ndarray, shape (P, K, 3)
+            World.
+        """
         tilt, angle = self.tilts[:, None, None], self.angles[None, :, None]
         hinge, turn, middle = self.axes
         return np.cos(angle) * (np.cos(tilt) * middle + np.sin(tilt) * turn) + np.sin(angle) * hinge
 
     def locate(self, directions: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Fractional (slice, ray) indices of unit vectors (..., 3), shape (2, ...)."""
+        """Where directions lie in the fan; the inverse of `directions`.
+
+        Parameters
+        ----------
+        directions : ndarray, shape (..., 3)
+            Unit vectors, world.
+
+        Returns
+        -------
+        ndarray, shape (2, ...)
+            Fractional (slice, ray).
+        """
         hinge, turn, middle = np.moveaxis(directions @ self.axes.T, -1, 0)
         tilt, angle = np.arctan2(turn, middle), np.arcsin(np.clip(hinge, -1, 1))
         steps = self.tilts[1] - self.tilts[0], self.angles[1] - self.angles[0]
         return np.stack([(tilt - self.tilts[0]) / steps[0], (angle - self.angles[0]) / steps[1]])
 
-    def frames(self, eye: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Origin, row and column vector of each slice, shape (P, 3, 3), world: point = origin + row r + col c."""
+    def frames(self, centre: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Place of each slice in the world: point = origin + row r + col c.
+
+        Parameters
+        ----------
+        centre : ndarray, shape (3,)
+            World mm.
+
+        Returns
+        -------
+        ndarray, shape (P, 3, 3)
+            Origin, row and column vector, world.
+        """
         up = np.cos(self.tilts)[:, None] * self.axes[2] + np.sin(self.tilts)[:, None] * self.axes[1]
-        return np.stack([np.broadcast_to(eye, up.shape), -up, np.broadcast_to(self.axes[0], up.shape)], axis=1)
+        return np.stack([np.broadcast_to(centre, up.shape), -up, np.broadcast_to(self.axes[0], up.shape)], axis=1)
 
 
 def axial_frames(bone: Volume, planes: range) -> NDArray[np.float64]:
-    """Frames of planes of the scan itself, slice (row, col) in px, shape (P, 3, 3)."""
+    """Frames of planes of the scan itself.
+
+    Parameters
+    ----------
+    bone : Volume
+    planes : range
+
+    Returns
+    -------
+    ndarray, shape (P, 3, 3)
+        Origin, row and column vector, world; slice (row, col) in px.
+
+    Examples
+    --------
+    >>> axial_frames(Volume(np.zeros((4, 4, 4)), np.eye(4)), range(2, 3))[0, 0]
+    array([2., 0., 0.])
+    """
     origins = [bone.to_world([plane, 0, 0]) for plane in planes]
     return np.stack([[origin, *bone.edges[1:]] for origin in origins])
 
@@ -77,6 +121,10 @@ def fans(radius_map: RadiusMap, n: int) -> list[Fan]:
     radius_map : RadiusMap
     n : int
         Number of directions, 1 or more.
+
+    Returns
+    -------
+    list of Fan
     """
     hole = radius_map.grid.directions[radius_map.hole]
     radius = float(np.nanmedian(radius_map.outer))
@@ -85,6 +133,7 @@ def fans(radius_map: RadiusMap, n: int) -> list[Fan]:
     for turn in np.arange(n) * np.pi / n:
         hinge = np.cos(turn) * across + np.sin(turn) * along
         axes = np.stack([hinge, np.cross(middle, hinge), middle])
+        # slices and rays over the hole, and bone to both sides of it
         h, t, m = (hole @ axes.T).T
         tilt, angle = np.arctan2(t, m), np.arcsin(h)
         tilts = np.arange(tilt.min() - 2 * _APART / radius, tilt.max() + 2 * _APART / radius, _APART / radius)
@@ -94,10 +143,22 @@ def fans(radius_map: RadiusMap, n: int) -> list[Fan]:
 
 
 def profile(radius_map: RadiusMap, fan: Fan) -> RayProfile:
-    """Radii and gap of every slice of a fan, read off the chart; lengths in mm."""
+    """Radii and gap of every slice of a fan, read off a radius map.
+
+    Parameters
+    ----------
+    radius_map : RadiusMap
+    fan : Fan
+
+    Returns
+    -------
+    RayProfile
+        Lengths in mm.
+    """
     at = radius_map.grid.locate(fan.directions)
     inside = ((at >= 0) & (at <= radius_map.grid.n - 1)).all(axis=0)
     hole = ndimage.map_coordinates(radius_map.hole.astype(np.float32), at, order=1) > 0.5
+    # a ray between known and unknown ones is unknown
     known = np.isfinite(radius_map.outer)
     seen = inside & (ndimage.map_coordinates(known.astype(np.float32), at, order=1) > 0.99)
     outer, inner = (
@@ -110,7 +171,7 @@ def profile(radius_map: RadiusMap, fan: Fan) -> RayProfile:
 def picture(
     volume: Volume, frame: NDArray[np.float64], rows: NDArray[np.float64], cols: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
-    """What a mask looks like in a slice.
+    """The mask in a slice.
 
     Parameters
     ----------
@@ -119,7 +180,7 @@ def picture(
     frame : ndarray, shape (3, 3)
         Origin, row and column vector of the slice, world.
     rows, cols : ndarray, shape (R,), (C,)
-        Where to look, in the slice's own unit.
+        Places in the slice, in its own unit.
 
     Returns
     -------

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ..grid import box_around
 from ..volume import Volume
 
 Array = NDArray[np.float64]
@@ -90,7 +91,7 @@ class Material:
         points = centre + directions[:, None] * (radius[:, None] + _DEPTHS)[..., None]
         index = self.volume.to_voxel(points)
         # only the box around the rays is turned into floats
-        box = self.volume.box_around(index.reshape(-1, 3), margin=1)
+        box = box_around(index.reshape(-1, 3), self.volume.shape, margin=1)
         start = np.array([side.start for side in box])
         values = ndimage.map_coordinates(
             self.volume.voxels[box].astype(np.float32),

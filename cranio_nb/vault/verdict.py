@@ -112,7 +112,7 @@ def judge(signs: Signs) -> Verdict:
         return Verdict(
             False, 0.4, "It lies in the vault, but between walls one behind the other, as orbits and sinuses do."
         )
-    if signs.on_vault < _VAULT_SHARE * (2 - signs.frame):
+    if signs.on_vault < _VAULT_SHARE * (1.5 - 0.5 * signs.frame):
         return Verdict(False, 0.45, "Most of it lies at the base of the skull.")
     return Verdict(
         False,

@@ -29,22 +29,18 @@
 # | stage | in | out | lesson |
 # |---|---|---|---|
 # | 1 segmentation | CT in HU | bone mask | 01, 02 |
-# | 2 features | bone of one slice | ends of the gap and their tangents | 03 |
+# | 2 feature extraction | bone of one slice | ends of the gap and their tangents | 03 |
 # | 3 deformable model | ends and tangents | outer and inner curve across the gap | 04 |
-# | 4 volume | curves | patch of voxels | 05 |
-# | 5 surface | patch | closed triangle mesh | 06 |
+# | 4 prosthesis volume | curves | patch of voxels | 05 |
+# | 5 surface reconstruction | patch | closed triangle mesh | 06 |
 # | and afterwards | mesh and truth | how good is it? what else closes it? | 07 to 10 |
 
 # %%
 import numpy as np
 
-from cranio_nb.drawing import scene3d, shading
-from cranio_nb.evaluation import scores
-from cranio_nb.geometry.mesh_check import check_mesh
-from cranio_nb.methods import slicewise
-from cranio_nb.stages import feature_extraction, segmentation
+import cranio_nb as cn
+from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search
 
 # %% [markdown]
 # ## 1. The scan
@@ -80,7 +76,7 @@ viewer
 # Then the couch and loose specks are dropped and small holes are closed.
 
 # %% tags=["nbval-check-output"]
-bone = segmentation.segment(ct, threshold=400)
+bone = cn.segment(ct, threshold=400)
 print(f"{bone.voxels.mean():.1%} of the voxels are bone")
 
 # %% [markdown]
@@ -89,7 +85,7 @@ print(f"{bone.voxels.mean():.1%} of the voxels are bone")
 # We stand inside the head and look out. Where a ray meets no bone, there is an opening.
 
 # %% tags=["nbval-check-output"]
-openings = opening_search.find_openings(bone)
+openings = cn.find_openings(bone)
 first, end = openings[0].planes
 print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 
@@ -140,8 +136,8 @@ player.set(preset="tangent pressure: k from the ends")
 # `design` does this for the whole hole, fills between the curves, and wraps the filled voxels in triangles.
 
 # %% tags=["nbval-check-output"]
-prosthesis = slicewise.design(bone, openings)
-report = check_mesh(prosthesis.mesh)
+prosthesis = cn.design(bone, openings)
+report = cn.check_mesh(prosthesis.mesh)
 print(
     f"{report.n_faces} triangles, {report.volume / 1000:.1f} cm3, can be built: {report.sound}"
 )
@@ -154,13 +150,11 @@ print(
 
 # %% tags=["nbval-check-output"]
 if case.truth is not None:
-    score = scores.score(prosthesis.patch, case.truth, bone)
+    score = cn.score(prosthesis.patch, case.truth, bone)
     print(f"Dice {score.dice:.3f}, 95 % of the surface within {score.hd95:.2f} mm")
 
 # %% tags=["nbval-check-output"]
-skull = shading.skull_surface(bone)
-alt = "A pale skull seen from its side; the hole is closed by the prosthesis, in blue."
-scene3d.show_meshes(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=alt)
+cn.show(bone, prosthesis)
 
 # %% [markdown]
 # *In a live notebook you can turn this head with the mouse.* Its top is flat because the slices are 2.5 mm apart: the
@@ -175,7 +169,7 @@ scene3d.show_meshes(skull, prosthesis.mesh, labels=["skull", "prosthesis"], alt=
 # rather than going on with nothing.
 
 # %% tags=["raises-exception"]
-segmentation.segment(ct, threshold=4000)
+cn.segment(ct, threshold=4000)
 
 # %% [markdown]
 # ## Exercises
@@ -221,7 +215,7 @@ check.exercise("0.2", dice)
 # | paper | code | unit |
 # |---|---|---|
 # | CT number | `ct.voxels` | HU |
-# | bone | `segmentation.segment` | mask |
+# | bone | `cn.segment` | mask |
 # | end points, tangents | `feature_extraction.find_gap_ends` -> `GapEnds` | px |
 # | balloon | `deformable_model.inflate` | px |
 # | prosthesis volume | `Prosthesis.patch` | mask |

@@ -23,27 +23,24 @@
 # **From the paper:** section 2, first paragraph, and Figure 1 (a).
 
 # %%
-import shutil
-import tempfile
-from pathlib import Path
-
 import numpy as np
 import pydicom
 
-from cranio_nb.readers import read_ct
-from cranio_nb.teaching import check, classroom, widgets
-from data_synth import phantom_case, write_dicom
+import cranio_nb as cn
+from cranio_nb.teaching import check, classroom, pictures, widgets
+from data_synth import write_dicom
 
 # %% [markdown]
 # ## 1. A folder of files
 #
 # A CT series is a folder with one file for each slice. We write one for a synthetic head, with file names in
 # a random order, as scanners like to do. (*The switch:* for a DICOM folder of your own, put
-# `folder = Path("path/to/your/dicom")` in place of the first three lines. Your files are only read.)
+# `import pathlib; folder = pathlib.Path("path/to/your/dicom")` in place of the first three lines. Your files are only
+# read.)
 
 # %% tags=["nbval-check-output"]
-head = phantom_case("class")
-folder = Path(tempfile.mkdtemp()) / "ct"
+head = classroom.synthetic("class").phantom
+folder = classroom.scratch_folder()
 write_dicom(folder, head.hu, head.affine, shuffle_names=True)
 files = sorted(folder.iterdir())
 one = pydicom.dcmread(files[0])
@@ -69,7 +66,7 @@ print(
     f"this slice: stored {stored.min()} to {stored.max()}, slope {slope}, intercept {intercept}"
 )
 print(f"this slice: {hu.min():.0f} to {hu.max():.0f} HU")
-ct, report = read_ct(folder)
+ct, report = cn.read_ct(folder)
 print(f"all slices: {ct.voxels.min()} to {ct.voxels.max()} HU")
 print(f"{ct.shape} voxels of {np.round(ct.spacing, 2)} mm")
 
@@ -116,14 +113,14 @@ print("voxel (10, 64, 64) lies at", np.round(ct.to_world([10, 64, 64]), 2), "mm"
 # %% tags=["nbval-check-output"]
 middle = ct.voxels[:, :, ct.shape[2] // 2]
 ratio = ct.spacing[0] / ct.spacing[1]
-fig, (wrong, right) = classroom.axes(2, height=3.0)
+fig, (wrong, right) = pictures.axes(2, height=3.0)
 look = {"cmap": "gray", "vmin": -700, "vmax": 1300, "origin": "lower"}  # plane 0 at the bottom
 wrong.imshow(middle, aspect=1, **look)
 right.imshow(middle, aspect=ratio, **look)
 wrong.set(title="voxels drawn as squares", xlabel="row", ylabel="plane")
 right.set(title="in true proportion", xlabel="row", ylabel="plane")
 alt = "The same side view of a head twice: squashed to a third of its height, and true."
-classroom.picture(fig, alt, f"one plane is as high as {ratio:.2f} rows")
+pictures.picture(fig, alt, f"one plane is as high as {ratio:.2f} rows")
 
 # %% [markdown]
 # How far apart are two slices? The **unit normal** is the direction at right angles to rows and columns, of length 1.
@@ -149,11 +146,11 @@ print(f"normal {normal}, height of the first file's slice {position @ normal:.2f
 # degrees (gantry tilt), (c) one file missing in the middle.
 
 # %% tags=["nbval-check-output"]
-tilted = phantom_case("class", tilt_deg=15.0)
-leaning = Path(tempfile.mkdtemp()) / "ct"
+tilted = classroom.synthetic("class", tilt_deg=15.0).phantom
+leaning = classroom.scratch_folder()
 write_dicom(leaning, tilted.hu, tilted.affine)
 for name, path in (("shuffled", folder), ("tilted", leaning)):
-    volume, report = read_ct(path)
+    volume, report = cn.read_ct(path)
     print(f"{name}: {volume.shape}, corners off by {report.corner_error:.3f} mm")
     for finding in report.findings:
         print(f"   {finding.severity}: {finding.message}")
@@ -179,17 +176,16 @@ for name, path in (("shuffled", folder), ("tilted", leaning)):
 # would make the head 2.5 mm shorter, and the prosthesis too. We lose a file of a copy, so that `folder` stays whole.
 
 # %% tags=["raises-exception"]
-lossy = Path(tempfile.mkdtemp()) / "ct"
-shutil.copytree(folder, lossy)
+lossy = classroom.scratch_folder(copy_of=folder)
 by_height = {pydicom.dcmread(f).ImagePositionPatient[2]: f for f in lossy.iterdir()}
 by_height[sorted(by_height)[20]].unlink()
-read_ct(lossy)
+cn.read_ct(lossy)
 
 # %% [markdown]
 # If you know what you do, you may allow it by name, and the report keeps it on record:
 
 # %% tags=["nbval-check-output"]
-volume, report = read_ct(lossy, allow=["gap_fill"])
+volume, report = cn.read_ct(lossy, allow=["gap_fill"])
 for finding in report.findings:
     print(f"{finding.severity}: {finding.message}")
 
@@ -211,16 +207,16 @@ def window(hu, centre, width):
 check.exercise("1.1", window)
 
 # %% tags=["expected"]
-fig, axes = classroom.axes(3, height=3.6)
+fig, panels = pictures.axes(3, height=3.6)
 windows = [("wide", 300, 2000), ("bone", 800, 800), ("brain", 40, 80)]
-for ax, (name, centre, width) in zip(axes, windows, strict=True):
+for ax, (name, centre, width) in zip(panels, windows, strict=True):
     grey = window(case.ct.voxels[38].astype(float), centre, width)
     ax.imshow(grey, cmap="gray", vmin=0, vmax=255)
     ax.set(title=f"{name}: {centre} / {width} HU", xticks=[], yticks=[])
 alt = (
     "One slice in three windows: skull and skin; bone alone; brain grey and noisy, bone white."
 )
-classroom.picture(fig, alt, "windows: wide, bone, brain")
+pictures.picture(fig, alt, "windows: wide, bone, brain")
 
 # %% [markdown]
 # **Exercise 1.2.** From index to millimetres. Use the affine (4, 4) and an index (plane, row, column).

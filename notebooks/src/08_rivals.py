@@ -27,13 +27,9 @@
 import numpy as np
 from skimage.morphology import convex_hull_image
 
-from cranio_nb.evaluation import against_truth as measure
-from cranio_nb.evaluation import paper_tables, scores
-from cranio_nb.methods import hull, reflection, slicewise
-from cranio_nb.methods.you.method import method as you
-from cranio_nb.stages import segmentation
-from cranio_nb.teaching import check, classroom, widgets
-from cranio_nb.vault import opening_search, symmetry
+import cranio_nb as cn
+from cranio_nb.evaluation import against_truth, paper_tables
+from cranio_nb.teaching import check, classroom, pictures, widgets
 
 # %% [markdown]
 # ## Parameters
@@ -50,9 +46,9 @@ from cranio_nb.vault import opening_search, symmetry
 
 # %%
 case = classroom.load("class", needs_truth=True)
-bone, px = segmentation.segment(case.ct), case.px
-openings = opening_search.find_openings(bone)
-true = measure.true_prosthesis(case.truth, bone, openings[0])
+bone, px = cn.segment(case.ct), case.px
+openings = cn.find_openings(bone)
+true = against_truth.true_prosthesis(case.truth, bone, openings[0].head_centre)
 
 # %% [markdown]
 # ## 1. The hull: a rubber sheet
@@ -67,13 +63,11 @@ true = measure.true_prosthesis(case.truth, bone, openings[0])
 # %% tags=["nbval-check-output"]
 diameters = np.linspace(0, 100, 51)
 depths = {f"R = {r} mm": r - np.sqrt(r**2 - diameters**2 / 4) for r in (65, 75, 85)}
-fig, (ax,) = classroom.axes(height=3.0)
-classroom.plot_lines(ax, diameters, depths, xlabel="hole (mm)", ylabel="too deep (mm)")
+fig, (ax,) = pictures.axes(height=3.0)
+pictures.plot_lines(ax, diameters, depths, xlabel="hole (mm)", ylabel="too deep (mm)")
 alt = "Three curves, depth of a flat lid against the hole's diameter: they rise ever steeper."
 at_40, at_95 = (75 - np.sqrt(75**2 - d**2 / 4) for d in (40, 95))
-classroom.picture(
-    fig, alt, f"R = 75 mm: {at_40:.1f} mm for a hole of 40 mm, {at_95:.1f} for 95"
-)
+pictures.picture(fig, alt, f"R = 75 mm: {at_40:.1f} mm for a hole of 40 mm, {at_95:.1f} for 95")
 
 # %% [markdown]
 # <details>
@@ -86,11 +80,12 @@ classroom.picture(
 # </details>
 
 # %% tags=["nbval-check-output"]
-sheet = hull.design(bone, openings)
+sheet = cn.design(bone, openings, method="hull")
 burr = classroom.load("class", defect="burr_hole", needs_truth=True)
-small = hull.design(segmentation.segment(burr.ct))
-print(f"this hole: Dice {scores.dice(sheet.patch, case.truth):.3f}")
-print(f"burr hole: Dice {scores.dice(small.patch, burr.truth):.3f}")
+small_bone = cn.segment(burr.ct)
+small = cn.design(small_bone, method="hull")
+print(f"this hole: Dice {cn.score(sheet.patch, case.truth, bone).dice:.3f}")
+print(f"burr hole: Dice {cn.score(small.patch, burr.truth, small_bone).dice:.3f}")
 
 # %% [markdown]
 # ## 2. The mirror
@@ -100,18 +95,18 @@ print(f"burr hole: Dice {scores.dice(small.patch, burr.truth):.3f}")
 # says how asymmetric this head is.
 
 # %% tags=["nbval-check-output"]
-plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre)
+plane = cn.design(bone, openings, method="reflection").record["symmetry"]
 print(
-    f"{np.degrees(plane.angle):.1f} degrees from the scan's mid-plane, "
-    f"{plane.offset:.1f} mm aside"
+    f"{plane['angle_deg']:.1f} degrees from the scan's mid-plane, "
+    f"{plane['offset_mm']:.1f} mm aside"
 )
-print(f"residual {plane.residual:.2f} mm (median)")
+print(f"residual {plane['residual_mm']:.2f} mm (median)")
 
 # %% [markdown]
 # **Predict, then move, then explain.** You set the plane by hand and are off: by 3 degrees of *turn* (about the upright
 # axis), by 3 degrees of *lean* (to a side), or by 1 mm of *shift*. Which one costs most?
 #
-# Controls: `turn`, `lean` and `shift`, e.g. `mirror.set(turn=3)`.
+# Controls: `turn_deg`, `lean_deg` and `shift_mm`, e.g. `mirror.set(turn_deg=3)`.
 
 # %% tags=["nbval-check-output"]
 mirror = widgets.symmetry_plane(bone, openings[0])
@@ -119,15 +114,15 @@ mirror
 
 # %% tags=["nbval-check-output"]
 for turn, lean, shift in ((3, 0, 0), (0, 3, 0), (0, 0, 1)):
-    print(mirror.set(turn=turn, lean=lean, shift=shift).view.line)
+    print(mirror.set(turn_deg=turn, lean_deg=lean, shift_mm=shift).view.line)
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
-# The median residual rises from 0.17 mm to 1.26 mm for the shift, to 1.13 mm for the turn and to 0.43 mm for the lean.
-# A plane that is off by 1 mm puts the image off by 2 mm: a mirror doubles its errors. The residual is measured to the
-# surface, so it sees all 2 mm only where the skull faces left or right; the median is 1.26 mm. Turning a
+# The shift, then the turn, and least the lean: their median residuals are printed above. A plane that is off by 1 mm puts
+# the image off by 2 mm: a mirror doubles its errors. The residual is measured to the surface, so it shows all 2 mm only
+# where the skull faces left or right; the median is less. Turning a
 # ball costs nothing; seen from above the head is an oval, from the front its vault is rounder, so a turn costs more than a
 # lean. At the hole itself nothing can tell you: the map is white there, and at the
 # hole's partner on the other side.
@@ -139,15 +134,16 @@ for turn, lean, shift in ((3, 0, 0), (0, 3, 0), (0, 0, 1)):
 
 # %% tags=["nbval-check-output"]
 cols = np.arange(bone.shape[2])
-middle = bone.to_voxel(plane.point)[2]
+middle = bone.to_voxel(plane["point"])[2]
 # each column of the right half shows what lay 1 / 1.04 times as far from the middle
 source = np.where(cols < middle, middle + (cols - middle) / 1.04, cols)
 lopsided = bone.with_voxels(bone.voxels[:, :, np.rint(source).astype(int)])
 copies = {}
 for name, skull in {"our head": bone, "lopsided": lopsided}.items():
     for fit in (False, True):
-        made = copies[name, fit] = reflection.design(skull, openings, fit_rim=fit)
-        dice = scores.dice(made.patch, case.truth)
+        made = cn.design(skull, openings, method="reflection", fit_rim=fit)
+        copies[name, fit] = made
+        dice = cn.score(made.patch, case.truth, skull).dice
         print(f"{name}, fit_rim {fit!s:5}: Dice {dice:.3f}")
 
 # %% tags=["nbval-check-output"]
@@ -162,9 +158,8 @@ for name in ("our head", "lopsided"):
 # <details>
 # <summary>Answer</summary>
 #
-# The phantom is nearly symmetric: its mirror image is nearly right already, and the fit gains little (Dice 0.950 to
-# 0.961). On the lopsided head the image stands beside the bone, and the rim knows by how much (0.870 to 0.952). Real
-# heads are of the second kind.
+# The phantom is nearly symmetric: its mirror image is nearly right already, and the fit gains little. On the
+# lopsided head the image lies beside the bone, and the rim says by how much. Real heads are of the second kind.
 #
 # The residual is small as the plane has moved over, into the middle of the wider head. What is left shows only where the
 # shape differs, not the width. A small residual is necessary for a good mirror, not sufficient.
@@ -204,9 +199,9 @@ film
 # average (exercise 8.2). That is the **planar bias**. Here:
 
 # %% tags=["nbval-check-output"]
-flat = you.design(bone, openings)
+flat = cn.design(bone, openings, method="you")
 columns = {"the paper's You": paper_tables.PAPER_DISTANCES["You et al."]}
-columns["here"] = measure.table3(flat, true, bone)["outer"]
+columns["here"] = against_truth.table3(flat, true, bone)["outer"]
 for name, row in columns.items():
     print(f"{name:15}: mean {row.mean:.2f} voxels, max {row.max:.2f}", end="")
     print(f": ratio {row.mean / row.max:.2f}")
@@ -223,10 +218,10 @@ for name, row in columns.items():
 
 # %% tags=["nbval-check-output"]
 rivals = {"hull": sheet, "You et al.": flat, "reflection": copies["our head", True]}
-rivals["slice method"] = slicewise.design(bone, openings)
+rivals["slice method"] = cn.design(bone, openings)
 print("                outer mean   max   inner mean   max    Dice  HD95 (mm)")
 for name, made in rivals.items():
-    seen = measure.against(made, true, bone)
+    seen = against_truth.against(made, true, bone)
     out, inn = seen.table3["outer"], seen.table3["inner"]
     print(f"{name:14} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
     print(f" {seen.score.dice:7.3f} {seen.score.hd95:6.2f}")
@@ -235,17 +230,13 @@ print("paper, its method     1.10  2.89         0.72  3.16")
 
 # %% tags=["nbval-check-output"]
 at = sum(openings[0].planes) // 2
-fig, axes = classroom.axes(4, height=4.4)
+fig, panels = pictures.axes(4, height=4.4)
 lost = case.truth.voxels[at]
-for ax, (name, made) in zip(axes, rivals.items(), strict=True):
+for ax, (name, made) in zip(panels, rivals.items(), strict=True):
     patch = made.patch.voxels[at]
-    classroom.show_mask(ax, bone.voxels[at], px=px)
-    classroom.show_mask(ax, lost & ~patch, px=px, colour="#D55E00")
-    classroom.show_mask(ax, patch & ~lost, px=px, colour="#0072B2")
-    classroom.show_mask(ax, patch & lost, px=px, colour="#56B4E9", title=name)
-    classroom.zoom(ax, [np.argwhere(lost)], px=px, margin=8)
+    pictures.show_errors(ax, patch, lost, bone.voxels[at], px=px, title=name)
 alt = "One slice, four methods: agreed light blue, missed bone orange, too much dark blue."
-classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
+pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
 
 # %% [markdown]
 # **Question.** Hull and flat fill are both straight between the rims. Why is the hull better (Dice 0.637 against
@@ -264,8 +255,8 @@ classroom.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone a
 # Ask the mirror for a hole that crosses the middle. What should be copied is missing, too:
 
 # %% tags=["raises-exception"]
-frontal = segmentation.segment(classroom.load("tiny", defect="frontal").ct)
-reflection.design(frontal)
+frontal = cn.segment(classroom.load("tiny", defect="frontal").ct)
+cn.design(frontal, method="reflection")
 
 # %% [markdown]
 # ## Exercises
@@ -300,14 +291,14 @@ def mean_depth(a, h):
 check.exercise("8.2", mean_depth)
 
 # %% tags=["expected"]
-fig, (ax,) = classroom.axes(height=3.0)
+fig, (ax,) = pictures.axes(height=3.0)
 heights = np.linspace(0.5, 20, 40)
 lines = {"mean depth, a = 35 mm": [mean_depth(35, h) for h in heights], "h / 2": heights / 2}
-classroom.plot_lines(ax, heights, lines, xlabel="height of the cap (mm)", ylabel="mm")
+pictures.plot_lines(ax, heights, lines, xlabel="height of the cap (mm)", ylabel="mm")
 alt = (
     "Mean depth against the height of the cap: nearly the straight line h / 2, a little above."
 )
-classroom.picture(fig, alt, f"a = 35 mm, h = 6 mm: {mean_depth(35, 6):.2f} mm")
+pictures.picture(fig, alt, f"a = 35 mm, h = 6 mm: {mean_depth(35, 6):.2f} mm")
 
 # %% [markdown]
 # **Exercise 8.3.** A lid for an open ring. The hull of a whole slice without its bone is the lid *and* the brain's place, in
@@ -335,10 +326,10 @@ check.exercise("8.3", lid)
 #
 # | paper | code | unit |
 # |---|---|---|
-# | convex hull, Fig. 6 | `hull.design`, `hull.paper_options` | |
-# | reflection | `symmetry.find_symmetry_plane`, `reflection.design` | degrees, mm |
-# | You et al. | `tetrahedra.extract`, `you.design` | mm |
-# | Table 3 | `truth.table3`, `tables.PAPER_DISTANCES` | voxels |
+# | convex hull, Fig. 6 | `cn.design(..., method="hull")` | |
+# | reflection | `symmetry.find_symmetry_plane`, `cn.design(..., method="reflection")` | degrees, mm |
+# | You et al. | `tetrahedra.extract`, `cn.design(..., method="you")` | mm |
+# | Table 3 | `against_truth.table3`, `paper_tables.PAPER_DISTANCES` | voxels |
 #
 # **Further reading.** Chen and Medioni, *Object modelling by registration of multiple range images*, Image and Vision
 # Computing 10 (1992), the way the plane is found. Pinkall and Polthier, *Computing discrete minimal surfaces and their

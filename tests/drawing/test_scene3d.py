@@ -8,20 +8,14 @@ import sys
 import numpy as np
 import pytest
 from PIL import Image
+from shapes import cube
 
 from cranio_nb.drawing import scene3d
-from cranio_nb.drawing.canvas import BLUE, rgb_of
+from cranio_nb.drawing.palette import BLUE, rgb_of
 from cranio_nb.errors import InputRefused
 from cranio_nb.mesh import Mesh
 
 ALT = "A cube before a larger one."
-
-
-def cube(size, at=(0.0, 0.0, 0.0)):
-    corners = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], float)
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    faces = np.array([f for a, b, c, d in quads for f in ((a, b, c), (a, c, d))])
-    return Mesh((corners - 0.5) * size + at, faces)
 
 
 @pytest.fixture
@@ -74,20 +68,6 @@ def test_without_pyvista_there_is_a_picture_and_a_sentence(monkeypatch):
     monkeypatch.setattr(scene3d, "find_spec", lambda name: None)
     data, _ = scene3d.show_meshes(cube(40), alt=ALT)._repr_mimebundle_()
     assert set(data) == {"image/png", "text/plain"} and "cranio-nb[view]" in data["text/plain"]
-
-
-@pytest.mark.parametrize("max_faces", [2000, 300])
-def test_a_thinned_sphere_keeps_to_its_radius(max_faces):
-    from skimage.measure import marching_cubes
-
-    grid = np.linalg.norm(np.mgrid[-25:26, -25:26, -25:26], axis=0)
-    vertices, faces, _, _ = marching_cubes(20 - grid, 0.0)
-    mesh, carried = scene3d.thinned(Mesh(vertices - 25, faces.astype(int)), vertices - 25, max_faces)
-    assert 0.3 * max_faces < len(mesh.faces) <= max_faces
-    cell = np.sqrt(4 * np.pi * 20**2 * 3 / max_faces)
-    sag = 20 - np.linalg.norm(mesh.vertices, axis=1)
-    assert sag.min() > -0.1 and sag.max() < cell**2 / 20
-    np.testing.assert_allclose(carried, mesh.vertices, atol=1e-9)
 
 
 REMOTE = """

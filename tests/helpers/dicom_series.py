@@ -15,6 +15,9 @@ from pydicom.uid import UID, ExplicitVRLittleEndian, generate_uid
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import LoadReport, read_ct
+from cranio_nb.readers.dicom.parse import parse_file
+from cranio_nb.readers.dicom.slice_header import SliceHeader, read_headers
+from cranio_nb.volume import Volume
 
 CT_IMAGE = "1.2.840.10008.5.1.4.1.1.2"
 AXIAL = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -157,3 +160,51 @@ def chain(*edits: Callable[[list[Dataset]], None]) -> Callable[[list[Dataset]], 
             one(datasets)
 
     return change
+
+
+def truth(orientation: object = AXIAL) -> np.ndarray:
+    """(plane, row, col) index -> LPS mm of `series(head())`."""
+    iop = np.array(orientation, float)
+    cols, rows = iop[:3], iop[3:]
+    affine = np.eye(4)
+    affine[:3] = np.stack([np.cross(cols, rows) * STEP, rows * SPACING[0], cols * SPACING[1], ORIGIN], axis=1)
+    return affine
+
+
+def assert_same_places(volume: Volume, hu: np.ndarray, affine: np.ndarray, tol: float = 1e-3) -> None:
+    """Every voxel of (hu, affine) is in the volume, at its own place."""
+    index = np.stack(np.meshgrid(*map(np.arange, hu.shape), indexing="ij"), axis=-1).reshape(-1, 3)
+    at = volume.to_voxel(index @ affine[:3, :3].T + affine[:3, 3])
+    assert np.abs(at - np.rint(at)).max() < tol
+    np.testing.assert_array_equal(volume.voxels[tuple(np.rint(at).astype(int).T)], hu.ravel())
+
+
+def patch(path: Path, old: bytes, new: bytes) -> None:
+    content = path.read_bytes()
+    assert content.count(old) == 1 and len(old) == len(new)
+    path.write_bytes(content.replace(old, new))
+
+
+def read_folder(folder: Path) -> list[SliceHeader]:
+    """Headers of all images of a folder, by file name."""
+    headers = []
+    for index, path in enumerate(sorted(folder.iterdir())):
+        parsed = parse_file(path, index)
+        assert parsed is not None
+        headers += read_headers(*parsed, index)
+    return headers
+
+
+def shift_hu(by: float, factor: float = 1) -> Callable[[list[Dataset]], None]:
+    def change(datasets: list[Dataset]) -> None:
+        for ds in datasets:
+            stored = np.frombuffer(ds.PixelData, "<u2").reshape(ds.Rows, ds.Columns).astype(float)
+            set_pixels(ds, ((stored - 1024) * factor + by + 8192).astype(int))
+            ds.RescaleIntercept = -8192
+
+    return change
+
+
+def as_unsigned_without_rescale(datasets: list[Dataset]) -> None:
+    for ds in datasets:
+        del ds.RescaleSlope, ds.RescaleIntercept

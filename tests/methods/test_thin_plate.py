@@ -145,7 +145,7 @@ def test_without_a_plane_of_symmetry_the_plate_is_bent_all_the_same(skull, made,
     def refuse(bone, centre):
         raise InputRefused("NoSymmetry", "Too little of the vault has a counterpart.")
 
-    monkeypatch.setattr(symmetry, "find", refuse)
+    monkeypatch.setattr(symmetry, "find_symmetry_plane", refuse)
     alone = thin_plate.design(skull("unilateral"))
     assert alone.record["symmetry"] == {"unused": "Too little of the vault has a counterpart."}
     assert alone.working[0].mirrored is None
@@ -163,7 +163,7 @@ def test_the_working_holds_a_plate_for_each_opening(made, skull):
 def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
     found = symmetry.find_symmetry_plane(skull("unilateral"), made.working[0].chart.grid.centre)
     for residual, used in ((1.2, True), (1.4, False)):
-        monkeypatch.setattr(symmetry, "find", lambda *_, r=residual: replace(found, residual=r))
+        monkeypatch.setattr(symmetry, "find_symmetry_plane", lambda *_, r=residual: replace(found, residual=r))
         plate = thin_plate.design(skull("unilateral"))
         assert (plate.working[0].mirrored is not None) is used
         assert ("unused" in plate.record["symmetry"]) is not used

@@ -6,7 +6,7 @@ import nbformat
 from notebook_runs import LESSONS, ROOT, run
 
 COMPARE = ["--nbval-lax", "--nbval-sanitize-with", str(ROOT / "san.cfg")]
-BALLOON = [path for path in LESSONS if path.stem == "04_balloon"]
+BALLOON = [path for path in LESSONS if path.stem == "04_deformable_model"]
 
 
 def compared(path):

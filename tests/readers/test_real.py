@@ -8,9 +8,10 @@ from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom.headers import slice_headers
-from cranio_nb.readers.dicom.pixels import check_format, stored_pixels, to_hu
-from cranio_nb.readers.dicom.scan import scan
+from cranio_nb.readers.dicom.parse import parse_file
+from cranio_nb.readers.dicom.pixel_data import check_format, read_pixels
+from cranio_nb.readers.dicom.rescale import apply_rescale
+from cranio_nb.readers.dicom.slice_header import read_headers
 from cranio_nb.volume import Volume
 
 pytestmark = pytest.mark.real
@@ -79,12 +80,12 @@ def test_broken_scans_are_refused(name: str, code: str, real_data: Path) -> None
 
 
 def decoded(path: Path) -> np.ndarray:
-    scanned = scan(path, 0)
+    scanned = parse_file(path, 0)
     assert scanned is not None
-    (header,) = slice_headers(*scanned, 0)
+    (header,) = read_headers(*scanned, 0)
     check_format(header, 0)
     assert header.slope is not None and header.intercept is not None
-    return to_hu(stored_pixels(header, 0), header, header.slope, header.intercept)[0]
+    return apply_rescale(read_pixels(header, 0), header, header.slope, header.intercept)[0]
 
 
 @pytest.mark.parametrize("scan_name", ["CT1", "CT2"])

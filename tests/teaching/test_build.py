@@ -1,6 +1,5 @@
 """What is shipped as lessons: in step with the texts, complete, light, described; and the command that makes them."""
 
-import html
 import json
 import re
 from pathlib import Path
@@ -13,7 +12,6 @@ from cranio_nb.cli.main import main
 from cranio_nb.errors import InputRefused
 from cranio_nb.teaching import build
 from cranio_nb.teaching.exercises import EXERCISES
-from cranio_nb.teaching.web_pages import write_pages
 
 FOLDER = Path(__file__).parents[2] / "notebooks"
 SOURCES = sorted((FOLDER / "src").glob("*.py"))
@@ -220,22 +218,3 @@ class TestCommand:
     def test_refuses_a_folder_without_lessons(self, tmp_path):
         with pytest.raises(InputRefused, match="No lesson texts"):
             build.build(tmp_path)
-
-
-def test_pages_hold_every_picture_with_its_description_and_need_no_kernel(tmp_path):
-    made = CliRunner().invoke(main, ["lessons", "html", str(tmp_path / "pages"), "--folder", str(FOLDER)])
-    assert made.exit_code == 0, made.output
-    assert sorted(path.stem for path in (tmp_path / "pages").iterdir()) == NAMES
-    for name in NAMES:
-        shown = pictures(nbformat.read(FOLDER / f"{name}.ipynb", as_version=4))
-        page = (tmp_path / "pages" / f"{name}.html").read_text()
-        found = re.findall(r'<img alt="([^"]*)"\s+src="data:image/png;base64,', page)
-        alts = [html.unescape(alt) for alt in found]
-        assert alts == [output.metadata["image/png"]["alt"] for output in shown] and all(alts)
-        assert "No description has been provided" not in page
-
-
-def test_pages_of_no_lessons_are_refused(tmp_path):
-    with pytest.raises(InputRefused, match="no notebooks"):
-        write_pages(tmp_path, tmp_path / "pages")
-    assert not (tmp_path / "pages").exists()

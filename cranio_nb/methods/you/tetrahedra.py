@@ -37,7 +37,7 @@ def extract(mask: Volume) -> Mesh:
         Vertices midway between voxels of the two kinds; normals point out of the mask.
     """
     vertices, faces = march(np.pad(np.where(mask.voxels, np.float32(1), np.float32(-1)), 1, constant_values=-1))
-    mirrored = np.linalg.det(mask.affine[:3, :3]) < 0
+    mirrored = np.linalg.det(mask.axes) < 0
     return Mesh(mask.to_world(vertices - 1), faces[:, ::-1].copy() if mirrored else faces)
 
 

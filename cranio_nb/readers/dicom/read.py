@@ -12,19 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InputRefused
-from ...volume import Affine, Volume, canonical_order
-from ..hu_checks import AIR, check_finite, check_hu, clear_padding, is_mask
+from ...grid import Affine, canonical_order
+from ...volume import Volume
+from ..hu_checks import AIR_HU, check_finite, check_hu, clear_padding, is_mask
 from ..load_report import Finding, LoadReport
-from ..regrid import resample_heights, slide_slices
+from ..regrid import resample_planes, slide_slices
 from .codecs import LOSSY
-from .files import IMAGE_SUFFIXES, list_files
+from .duplicates import keep_one_per_position
+from .file_list import IMAGE_SUFFIXES, list_files
 from .geometry import Stack, build_stack
-from .headers import SliceHeader, slice_headers
-from .pixels import check_format, stored_pixels, to_hu
-from .rescale import check_levels, check_rescale, check_unscaled
-from .scan import MAX_SLICES, scan
-from .series import choose_series
-from .slices import one_per_position
+from .parse import MAX_SLICES, parse_file
+from .pixel_data import check_format, read_pixels
+from .rescale import apply_rescale, check_levels, check_rescale, check_unscaled
+from .series_choice import choose_series
+from .slice_header import SliceHeader, read_headers
 from .steps import Plan, plan_steps
 
 MAX_BYTES = 2**31  # of the voxels
@@ -36,18 +37,52 @@ def read_dicom(
 ) -> tuple[Volume, LoadReport]:
     """Read the head CT of a folder, or of one multi-frame file.
 
-    Parameters, returns and errors are those of `cranio_nb.readers.read_ct`.
+    Parameters
+    ----------
+    path : Path
+        Folder, or multi-frame file.
+    mask, allow
+        As for `cranio_nb.readers.read_ct`.
+    progress : callable, optional
+        Called with (slices done, slices in all).
+
+    Returns
+    -------
+    volume : Volume
+        HU as int16 or float32, or bool for a mask; planes up, rows back, columns left.
+    report : LoadReport
+
+    Raises
+    ------
+    InputRefused
+        Whatever cannot be read safely.
+
+    Examples
+    --------
+    >>> from data_synth import write_dicom
+    >>> hu = np.full((12, 40, 40), -1000, np.int16)
+    >>> hu[:, 10:30, 10:30] = 900
+    >>> affine = np.array([[0, 0, 0.5, 0], [0, 0.5, 0, 0], [2.5, 0, 0, 0], [0, 0, 0, 1]])
+    >>> files = write_dicom("scan", hu, affine)
+    >>> ct, report = read_dicom(Path("scan"))
+    >>> bool((ct.voxels == hu).all()), ct.spacing, [finding.code for finding in report.findings]
+    (True, array([2.5, 0.5, 0.5]), ['SeriesChosen'])
     """
+    # what the headers say: which images are the scan, and in which order
     headers, findings = _all_headers(path)
     series, more = choose_series(headers, allow)
     findings += more
-    slices, more = one_per_position(series, allow)
+    slices, more = keep_one_per_position(series, allow)
     findings += more
     if path.is_file() and len(slices) < 2:
         raise InputRefused("TooFewSlices", "The file holds one slice of a scan.", "Give the folder with all slices.")
+
+    # the plan: where the slices lie, and at which even steps the planes will
     stack = build_stack(slices)
     plan = plan_steps(stack, allow)
     _check_formats(stack)
+
+    # the pixels, and the planes made of them
     voxels, more = _voxels(stack, mask, allow, progress)
     findings += [*more, *_remarks(stack), *plan.findings]
     voxels, affine, more = _upright(voxels, stack, plan)
@@ -55,13 +90,14 @@ def read_dicom(
 
 
 def _all_headers(path: Path) -> tuple[list[SliceHeader], list[Finding]]:
+    """Headers of all images of a folder or file, and what else lies there."""
     files, findings = ([path], []) if path.is_file() else list_files(path)
     headers: list[SliceHeader] = []
     others: list[Path] = []
     empty = 0
     for index, file in enumerate(files):
-        scanned = scan(file, index)
-        images = slice_headers(*scanned, index) if scanned else []
+        scanned = parse_file(file, index)
+        images = read_headers(*scanned, index) if scanned else []
         headers += images
         if scanned is None:
             others.append(file)
@@ -78,6 +114,7 @@ def _all_headers(path: Path) -> tuple[list[SliceHeader], list[Finding]]:
 
 
 def _check_formats(stack: Stack) -> None:
+    """Refuse scans beyond the limits, and pixels that cannot be read, before any is decoded."""
     headers, first = stack.headers, stack.headers[0]
     n_bytes = len(headers) * first.rows * first.cols * 2
     for what, declared, cap in (("slices", len(headers), MAX_SLICES), ("bytes of voxels", n_bytes, MAX_BYTES)):
@@ -97,9 +134,11 @@ def _voxels(
     check_finite(voxels)
     if mask or (mask is None and is_mask(voxels)):
         return voxels != 0, []
+
+    # HU: rescaled, without padding, each slice at the level of the others
     findings = [check_unscaled(voxels, stack.headers[0].signed, allow)] if unscaled else []
     if padded:
-        message = f"{padded} pixels of padding were set to {AIR} HU."
+        message = f"{padded} pixels of padding were set to {AIR_HU} HU."
         findings.append(Finding("Padding", "corrected", message, {"pixels": padded}))
     voxels, more = clear_padding(voxels)
     findings += more
@@ -114,7 +153,7 @@ def _decode(stack: Stack, pairs: NDArray[np.float64], progress: Progress | None)
     voxels = np.empty((len(headers), headers[0].rows, headers[0].cols), np.int16)
     padded = 0
     for index, (header, (slope, intercept)) in enumerate(zip(headers, pairs, strict=True)):
-        hu, padding = to_hu(stored_pixels(header, index), header, slope, intercept)
+        hu, padding = apply_rescale(read_pixels(header, index), header, slope, intercept)
         if hu.dtype != voxels.dtype:
             voxels = voxels.astype(np.float32)
         voxels[index] = hu
@@ -146,16 +185,20 @@ def _remarks(stack: Stack) -> list[Finding]:
 
 def _upright(voxels: NDArray, stack: Stack, plan: Plan) -> tuple[NDArray, Affine, list[Finding]]:
     """Voxels on an even grid with its affine (plane, row, col) -> mm."""
-    fill = 0 if voxels.dtype == bool else AIR
+    # where each slice slides to in its own plane, px
+    fill = 0 if voxels.dtype == bool else AIR_HU
     origin, direction, findings = stack.origin, stack.normal + stack.shear, []
     rows, cols = stack.along_rows * stack.spacing[0], stack.along_cols * stack.spacing[1]
     slides = stack.heights[:, None] * (stack.shear @ np.stack([rows, cols]).T / stack.spacing**2)
+
+    # slid by more than half a pixel in all: shifted back
     if np.ptp(slides, axis=0).max() > 0.5:
         voxels, start = slide_slices(voxels, slides, fill=fill)
         origin, direction = origin + start @ np.stack([rows, cols]), stack.normal
         findings.append(_tilt_finding(stack))
     if plan.wanted is not None:
-        voxels = resample_heights(voxels, stack.heights, plan.wanted)
+        voxels = resample_planes(voxels, stack.heights, plan.wanted)
+
     affine = np.eye(4)
     affine[:3] = np.stack([direction * plan.step, rows, cols, origin], axis=1)
     return voxels, affine, findings

@@ -1,15 +1,35 @@
-"""The exercises of the lessons: the cases each is tried on, the answer, how answers are compared, typical mistakes."""
+"""The exercises, a module for each lesson: the cases each is tried on, the answer, how two answers are compared."""
 
-from .curves import CURVES
-from .image import IMAGE
-from .measure import MEASURE
-from .plates import PLATES
-from .rivals import RIVALS
-from .solid import SOLID
+from . import (
+    ct,
+    deformable_model,
+    evaluation,
+    feature_extraction,
+    paper_tables,
+    prosthesis_volume,
+    rivals,
+    segmentation,
+    surface_reconstruction,
+    three_d,
+    tour,
+)
 from .task import Exercise
 
-_ALL = {**IMAGE, **CURVES, **SOLID, **MEASURE, **RIVALS, **PLATES}
-EXERCISES: dict[str, Exercise] = dict(sorted(_ALL.items(), key=lambda pair: [int(n) for n in pair[0].split(".")]))
+_LESSONS = (
+    tour,
+    ct,
+    segmentation,
+    feature_extraction,
+    deformable_model,
+    prosthesis_volume,
+    surface_reconstruction,
+    evaluation,
+    rivals,
+    three_d,
+    paper_tables,
+)
+
+EXERCISES: dict[str, Exercise] = {number: task for lesson in _LESSONS for number, task in lesson.EXERCISES.items()}
 """By number, lesson by lesson."""
 
 __all__ = ["EXERCISES", "Exercise"]

@@ -60,15 +60,15 @@ def _lid(bone, inner):
     return convex_hull_image(bone) & ~convex_hull_image(inner) & ~bone
 
 
-RIVALS = {
+EXERCISES: dict[str, Exercise] = {
     "8.1": Exercise(
-        _pairs,
-        _plane,
-        _plane_error,
-        "mm",
-        1e-6,
-        "two arrays of 3 numbers: the unit normal and a point",
-        (
+        cases=_pairs,
+        right=_plane,
+        error=_plane_error,
+        unit="mm",
+        tolerance=1e-6,
+        form="two arrays of 3 numbers: the unit normal and a point",
+        mistakes=(
             (lambda a, b: ((a - b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a[0] + b[0]) / 2), _LONG),
@@ -89,21 +89,21 @@ RIVALS = {
                 "The plane need not pass through 0, 0, 0: a point half-way between a pair lies on it.",
             ),
         ),
-        (
+        hints=(
             "Which way does one go from a point to its partner?",
             "The normal is the direction of a - b; half-way between a and b lies the plane.",
             "d = (a - b).sum(axis=0); d / np.linalg.norm(d), (a + b).mean(axis=0) / 2",
         ),
-        "the pairs' own plane, wherever the head lies.",
+        praise="the pairs' own plane, wherever the head lies.",
     ),
     "8.2": Exercise(
-        _caps,
-        _mean_depth,
-        largest_difference,
-        "mm",
-        1e-6,
-        "one number",
-        (
+        cases=_caps,
+        right=_mean_depth,
+        error=largest_difference,
+        unit="mm",
+        tolerance=1e-6,
+        form="one number",
+        mistakes=(
             (lambda a, h: h, "This is the depth in the middle, the largest; wanted is the mean."),
             (
                 lambda a, h: h / 2,
@@ -115,21 +115,21 @@ RIVALS = {
                 "This is the volume of the cap; divide it by the area of the hole.",
             ),
         ),
-        (
+        hints=(
             "Mean depth = volume between cap and lid / area of the lid.",
             "The cap's volume is pi h (3 a^2 + h^2) / 6, the lid's area pi a^2.",
             "h * (3 * a**2 + h**2) / (6 * a**2)",
         ),
-        "about half of the height, the price of a flat fill.",
+        praise="about half of the height, the price of a flat fill.",
     ),
     "8.3": Exercise(
-        _open_rings,
-        _lid,
-        different_pixels,
-        "pixels",
-        0.0,
-        "a mask like the ones given",
-        (
+        cases=_open_rings,
+        right=_lid,
+        error=different_pixels,
+        unit="pixels",
+        tolerance=0.0,
+        form="a mask like the ones given",
+        mistakes=(
             (
                 lambda b, i: convex_hull_image(b) & ~b,
                 "The brain's place is in it: take the hull of the inner edge away too.",
@@ -144,12 +144,12 @@ RIVALS = {
             ),
             (lambda b, i: convex_hull_image(i) & ~b, "This is the inside of the head."),
         ),
-        (
+        hints=(
             "One hull for the outside, one for the inside.",
             "convex_hull_image(inner) is the inside of the head.",
             "convex_hull_image(bone) & ~convex_hull_image(inner) & ~bone",
         ),
-        "a lid where the paper's rule would give nothing.",
+        praise="a lid where the paper's rule would give nothing.",
     ),
 }
-"""Lesson 08."""
+"""The exercises of lesson 08, by number."""

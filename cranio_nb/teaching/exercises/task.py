@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from data_synth import Case
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class Exercise:
     """One exercise.
 
@@ -52,7 +52,12 @@ class Exercise:
 
 @cache
 def small_head() -> Case:
-    """The tiny phantom; its arrays are read-only."""
+    """The tiny phantom; its arrays are read-only.
+
+    Returns
+    -------
+    data_synth.Case
+    """
     from data_synth import phantom_case
 
     case = phantom_case("tiny")
@@ -63,7 +68,22 @@ def small_head() -> Case:
 
 
 def largest_difference(answer: ArrayLike, right: ArrayLike) -> float:
-    """Largest absolute difference of two arrays or numbers of one shape."""
+    """Largest absolute difference of two arrays or numbers.
+
+    Parameters
+    ----------
+    answer, right : array_like
+
+    Returns
+    -------
+    float
+        In their unit; inf where the shapes differ.
+
+    Examples
+    --------
+    >>> largest_difference([1, 2], [1, 5]), largest_difference([1, 2], 1)
+    (3.0, inf)
+    """
     a, b = np.asarray(answer, float), np.asarray(right, float)
     if a.shape != b.shape:
         return float("inf")
@@ -71,7 +91,24 @@ def largest_difference(answer: ArrayLike, right: ArrayLike) -> float:
 
 
 def different_pixels(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
-    """Number of pixels in which two masks differ; numbers other than 0 and 1 are no mask."""
+    """Number of pixels in which two masks differ.
+
+    Parameters
+    ----------
+    answer : array_like
+        Bool, or 0 and 1; other numbers are no mask.
+    right : ndarray of bool
+
+    Returns
+    -------
+    float
+        inf where the answer is no mask of that shape.
+
+    Examples
+    --------
+    >>> different_pixels([1, 0, 1], np.array([True, True, True])), different_pixels([2, 0, 1], np.ones(3, bool))
+    (1.0, inf)
+    """
     a = np.asarray(answer)
     if a.shape != right.shape or not np.isin(a, (0, 1)).all():
         return float("inf")
@@ -79,7 +116,23 @@ def different_pixels(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
 
 
 def degrees_apart(answer: ArrayLike, right: ArrayLike) -> float:
-    """Angle between two directions, whichever way they point, in degrees."""
+    """Angle between two directions, whichever way they point.
+
+    Parameters
+    ----------
+    answer, right : array_like, shape (n,)
+        Of any length but 0.
+
+    Returns
+    -------
+    float
+        Degrees, 0 to 90; inf where the answer is no direction.
+
+    Examples
+    --------
+    >>> round(degrees_apart([-2, 0], [1, 1]), 6)
+    45.0
+    """
     a, b = np.asarray(answer, float), np.asarray(right, float)
     if a.shape != b.shape or not np.linalg.norm(a) > 0:
         return float("inf")

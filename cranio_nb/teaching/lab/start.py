@@ -21,6 +21,15 @@ TOUR = "00_tour.ipynb"
 def lessons_folder(folder: Path | None = None) -> Path:
     """The folder that holds the lessons: the one asked for, or the nearest ``notebooks``.
 
+    Parameters
+    ----------
+    folder : Path, optional
+
+    Returns
+    -------
+    Path
+        Absolute.
+
     Raises
     ------
     InputRefused
@@ -46,6 +55,10 @@ def lab_command(folder: Path, *, browser: bool = True, port: int | None = None) 
         Whether to open a browser window.
     port : int, optional
         8888 or the next free one when not given.
+
+    Returns
+    -------
+    list of str
     """
     command = [sys.executable, "-m", "jupyterlab", f"--LabApp.app_settings_dir={SETTINGS}"]
     command += [f"--ServerApp.root_dir={folder}", f"--LabApp.default_url=/lab/tree/{TOUR}"]
@@ -54,7 +67,19 @@ def lab_command(folder: Path, *, browser: bool = True, port: int | None = None) 
 
 
 def open_lab(folder: Path | None = None, *, browser: bool = True, port: int | None = None) -> int:
-    """Open JupyterLab at the tour and wait until it is closed; returns its exit code.
+    """Open JupyterLab at the tour and wait until it is closed.
+
+    Parameters
+    ----------
+    folder : Path, optional
+        As for `lessons_folder`.
+    browser, port
+        As for `lab_command`.
+
+    Returns
+    -------
+    int
+        Its exit code.
 
     Raises
     ------
@@ -71,5 +96,10 @@ def open_lab(folder: Path | None = None, *, browser: bool = True, port: int | No
 
 
 def lab_environment() -> dict[str, str]:
-    """The environment of the lab and its kernels: VTK looks for no display."""
+    """The environment of the lab and its kernels: VTK looks for no display.
+
+    Returns
+    -------
+    dict of str to str
+    """
     return {"VTK_DEFAULT_OPENGL_WINDOW": "vtkOSOpenGLRenderWindow"} | dict(os.environ)

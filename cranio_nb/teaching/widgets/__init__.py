@@ -6,15 +6,17 @@ degrees, attenuation in HU; the balloon's own frame is px, as in the paper.
 """
 
 from ...drawing.front_end import mode
-from .bone import ct_viewer, threshold
 from .controls import View
-from .gap import features
-from .inflation import balloon
+from .ct import ct_viewer
+from .deformable_model import balloon
+from .evaluation import distances
+from .feature_extraction import features
 from .panel import Panel
-from .plates import bent_plate, elastic_sheet
+from .prosthesis_volume import patch
 from .rivals import guiding_points, symmetry_plane
-from .solid import evaluation, surface
-from .stack import patch
+from .segmentation import threshold
+from .surface_reconstruction import surface
+from .three_d import bent_plate, elastic_sheet
 from .tuning import Tuner, tuner
 
 __all__ = [
@@ -24,8 +26,8 @@ __all__ = [
     "balloon",
     "bent_plate",
     "ct_viewer",
+    "distances",
     "elastic_sheet",
-    "evaluation",
     "features",
     "guiding_points",
     "mode",

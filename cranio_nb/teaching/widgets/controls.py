@@ -10,7 +10,19 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Slider:
-    """A number to choose. `label` names it with its unit; `log` spaces the values evenly in their logarithm."""
+    """A number to choose.
+
+    Parameters
+    ----------
+    name : str
+    label : str
+        Names it, with its unit.
+    low, high, value, step : float
+    log : bool
+        Whether values are spaced evenly in their logarithm; `step` is not used then.
+    player : bool
+        Whether it can be played.
+    """
 
     name: str
     label: str
@@ -24,7 +36,14 @@ class Slider:
 
 @dataclass(frozen=True)
 class Choice:
-    """One of a few words to choose."""
+    """One of a few words to choose.
+
+    Parameters
+    ----------
+    name, label : str
+    options : tuple of str
+    value : str
+    """
 
     name: str
     label: str
@@ -34,7 +53,13 @@ class Choice:
 
 @dataclass(frozen=True)
 class Switch:
-    """Something to turn on and off."""
+    """Something to turn on and off.
+
+    Parameters
+    ----------
+    name, label : str
+    value : bool
+    """
 
     name: str
     label: str

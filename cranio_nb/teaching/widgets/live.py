@@ -25,7 +25,12 @@ _WIDE = ipw.Layout(width="580px")
 
 
 class Front:
-    """The widgets of a panel: `controls` by name, `image`, `caption`, and the `box` that holds them."""
+    """The widgets of a panel: `controls` by name, `image`, `caption`, and the `box` that holds them.
+
+    Parameters
+    ----------
+    panel : Panel
+    """
 
     def __init__(self, panel: Any) -> None:
         self.panel = panel
@@ -45,7 +50,13 @@ class Front:
         self.box = ipw.VBox([*rows, *self._buttons(), self.image, self.caption])
 
     def set(self, values: dict[str, Any]) -> None:
-        """Move the widgets and draw once, at once."""
+        """Move the widgets and draw once, at once.
+
+        Parameters
+        ----------
+        values : dict
+            By name of the control.
+        """
         self._paused = True
         for name, value in values.items():
             self.controls[name].value = value
@@ -112,7 +123,13 @@ _STEPS = (("step-backward", "one step back"), ("step-forward", "one step on"))
 
 
 class Latest:
-    """Calls that come too fast: the first is done at once, of those that wait only the last."""
+    """Calls that come too fast: the first is done at once, of those that wait only the last.
+
+    Parameters
+    ----------
+    call : callable
+        () -> None.
+    """
 
     def __init__(self, call: Callable[[], None]) -> None:
         self._call = call

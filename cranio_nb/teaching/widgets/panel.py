@@ -1,6 +1,6 @@
 """Controls as plain values and a function from them to a picture -> something a notebook shows.
 
-A panel is the same in both modes up to its front: `live` puts real controls before it, here it is one picture.
+In both modes a panel makes the same picture; `live` adds widgets that move it.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Panel:
     picture : callable
         Values by name -> `View`; a pure function.
     alt : str
-        What the picture shows, for those who cannot see it.
+        What the picture shows, in words.
     actions : dict of str to callable, optional
         Buttons: label -> what to do with the panel, returning a line to show.
     slow : bool
@@ -51,6 +51,16 @@ class Panel:
     def set(self, **values: Any) -> Panel:
         """Move controls and draw at once.
 
+        Parameters
+        ----------
+        **values
+            By name of the control.
+
+        Returns
+        -------
+        Panel
+            This one.
+
         Raises
         ------
         InputRefused
@@ -67,7 +77,17 @@ class Panel:
         return self
 
     def update(self, values: dict[str, Any]) -> View:
-        """Take new values and draw; a setting that cannot be drawn keeps the picture and says why."""
+        """Take new values and draw; a setting that cannot be drawn keeps the picture and says why.
+
+        Parameters
+        ----------
+        values : dict
+            By name of the control.
+
+        Returns
+        -------
+        View
+        """
         self.values = self.values | values
         try:
             self.view = self._picture(**self.values)
@@ -77,7 +97,12 @@ class Panel:
 
     @cached_property
     def front(self) -> Any:
-        """The controls as widgets (`live.Front`)."""
+        """The controls as widgets.
+
+        Returns
+        -------
+        live.Front
+        """
         from .live import Front
 
         return Front(self)

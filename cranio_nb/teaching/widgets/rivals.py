@@ -11,9 +11,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from ...drawing.canvas import BLACK, BLUE, BONE, GREY, ORANGE, SKY, VERMILLION, Canvas, Window, plain, rgb_of, tinted
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY, VERMILLION, rgb_shares
+from ...drawing.pixels import Window, plain, tinted
 from ...drawing.shading import Solid, render, view_axes
-from ...evaluation import scores
+from ...evaluation import mesh_distances
 from ...methods.you import mesh_to_voxels
 from ...methods.you import method as you
 from ...opening import Opening
@@ -23,10 +25,9 @@ from ...vault.outer_surface import OuterSurface, measure_outer_surface
 from ...vault.ray_grid import RadiusMap
 from ...vault.symmetry import SymmetryPlane
 from ...volume import Volume
-from .bone import dress
 from .controls import Slider, View
 from .panel import Panel
-from .solid import coloured
+from .parts import annotate_slice, coloured, draw_colour_scale, draw_sides
 
 _SIDE = 440  # px
 _TOP = 4.0  # mm: upper end of the scale of residuals
@@ -40,8 +41,8 @@ class FlatFill:
     Parameters
     ----------
     made : you.Filling
-    seen : Canvas
-        Hole, rim, guides and fill, looked at from outside.
+    picture : Canvas
+        Hole, rim, guides and fill, from outside.
     patch : ndarray of bool, shape (R, C)
         Voxels of the fill in one plane.
     off : ndarray, shape (V,)
@@ -49,7 +50,7 @@ class FlatFill:
     """
 
     made: you.Filling
-    seen: Canvas
+    picture: Canvas
     patch: NDArray[np.bool_]
     off: NDArray[np.float64]
 
@@ -63,24 +64,30 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
         Bool mask of the skull.
     opening : Opening
     truth : Prosthesis, optional
-        The missing bone with sides and patch, where it is known (`truth.true_prosthesis`).
+        The missing bone with sides and patch, where it is known (`against_truth.true_prosthesis`).
+
+    Returns
+    -------
+    Panel
+        Control ``n``.
     """
     vault, plane = radius_measurement.measure_around(bone, opening), sum(opening.planes) // 2
-    made = lru_cache(maxsize=None)(lambda n: flat_fill(bone, opening, vault, n, plane, truth))
+    made = lru_cache(maxsize=None)(lambda n: _flat_fill(bone, opening, vault, n, plane, truth))
     lost = np.zeros(bone.shape[1:], bool) if truth is None or truth.patch is None else truth.patch.voxels[plane]
     alt = "The hole from outside with guiding points, rim and fill; beside it a slice with the fill and what it misses."
     controls = (Slider("n", "guiding points", 3, 24, 12),)
     return Panel(controls, lambda n: _guides_view(bone, plane, made(n), lost), alt=alt, slow=True)
 
 
-def flat_fill(
+def _flat_fill(
     bone: Volume, opening: Opening, vault: RadiusMap, n: int, plane: int, truth: Prosthesis | None
 ) -> FlatFill:
     """Fill a hole between `n` guiding points and measure it."""
     made = you.fill_between(bone, opening, you.find_guides(vault, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
     patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
-    off = np.zeros(0) if truth is None else scores.surface_distance(made.outer.mesh.vertices, truth.surface(OUTER))
+    nodes = made.outer.mesh.vertices
+    off = np.zeros(0) if truth is None else mesh_distances.surface_distance(nodes, truth.surface(OUTER))
     return FlatFill(made, _from_outside(made, opening.direction), patch, off)
 
 
@@ -90,8 +97,8 @@ def _from_outside(made: you.Filling, towards: NDArray[np.float64]) -> Canvas:
     meshes = (made.skull, BONE), (made.outer.mesh, SKY)
     flat = np.concatenate([mesh.vertices for mesh, _ in meshes]) @ right_down
     low, px = flat.min(axis=0) - _FREE, float(np.ptp(flat, axis=0).max() / (_SIDE - 30))
-    solids = [Solid(mesh, np.array(rgb_of(colour)) / 255) for mesh, colour in meshes]
-    rgb = (255 * render(solids, towards, px=px).rgb).astype(np.uint8)
+    solids = [Solid(mesh, rgb_shares(colour)) for mesh, colour in meshes]
+    rgb = (255 * render(solids, towards, px_mm=px).rgb).astype(np.uint8)
     corner = (_SIDE - np.array(rgb.shape[1::-1])) // 2
     canvas = Canvas(_SIDE, _SIDE)
     canvas.place(rgb, *corner)
@@ -105,7 +112,7 @@ def _from_outside(made: you.Filling, towards: NDArray[np.float64]) -> Canvas:
 def _guides_view(bone: Volume, plane: int, fill: FlatFill, lost: NDArray[np.bool_]) -> View:
     """The fill from outside, and one slice of it over the bone that is missing."""
     canvas = Canvas(2 * _SIDE, _SIDE)
-    canvas.inlay(fill.seen, 0, 0)
+    canvas.inlay(fill.picture, 0, 0)
     inset = Canvas(_SIDE, _SIDE)
     index = np.argwhere(fill.patch | lost) if (fill.patch | lost).any() else np.argwhere(bone.voxels[plane])
     window = Window.around((0, 0, _SIDE, _SIDE), index.min(axis=0) - 12, index.max(axis=0) + 12)
@@ -113,7 +120,7 @@ def _guides_view(bone: Volume, plane: int, fill: FlatFill, lost: NDArray[np.bool
     for mask, colour in ((bone.voxels[plane], BONE), (lost, VERMILLION), (fill.patch, SKY)):
         rgb = tinted(rgb, mask, colour)
     inset.show(rgb, window)
-    dress(inset, window, bone, plane)
+    annotate_slice(inset, window, bone, plane)
     inset.legend(_SIDE - 150, 6, [(SKY, "area", "fill"), (VERMILLION, "area", "missed bone")])
     canvas.inlay(inset, _SIDE, 0)
     rim = fill.made.outer_rim.points
@@ -134,30 +141,50 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     bone : Volume
         Bool mask of the skull.
     opening : Opening
-        Its head centre is where the vault is looked at from, its planes choose the slice.
+        The vault is measured from its head centre; its planes choose the slice.
+
+    Returns
+    -------
+    Panel
+        Controls ``turn_deg``, ``lean_deg`` and ``shift_mm``.
     """
-    found, surface = (
-        symmetry.find_symmetry_plane(bone, opening.head_centre),
-        measure_outer_surface(bone, opening.head_centre),
-    )
+    found = symmetry.find_symmetry_plane(bone, opening.head_centre)
+    surface = measure_outer_surface(bone, opening.head_centre)
     plane = sum(opening.planes) // 2
     controls = (
-        Slider("turn", "turned about the upright axis (degrees)", -10.0, 10.0, 0.0, 0.5),
-        Slider("lean", "leaning to a side (degrees)", -10.0, 10.0, 0.0, 0.5),
-        Slider("shift", "shifted to the left (mm)", -10.0, 10.0, 0.0, 0.5),
+        Slider("turn_deg", "turned about the upright axis (degrees)", -10.0, 10.0, 0.0, 0.5),
+        Slider("lean_deg", "leaning to a side (degrees)", -10.0, 10.0, 0.0, 0.5),
+        Slider("shift_mm", "shifted to the left (mm)", -10.0, 10.0, 0.0, 0.5),
     )
     alt = "A slice with the mirror image over the bone and the plane; beside it the residual over the vault."
     return Panel(
-        controls, lambda **move: _mirror_view(bone, surface, moved(found, surface, **move), plane, move), alt=alt
+        controls, lambda **move: _mirror_view(bone, surface, move_plane(found, surface, **move), plane, move), alt=alt
     )
 
 
-def moved(plane: SymmetryPlane, surface: OuterSurface, turn: float, lean: float, shift: float) -> SymmetryPlane:
-    """A plane turned and leaning by degrees about the point nearest to the eye, then shifted along its normal by mm."""
+def move_plane(
+    plane: SymmetryPlane, surface: OuterSurface, *, turn_deg: float, lean_deg: float, shift_mm: float
+) -> SymmetryPlane:
+    """Turn and lean a plane about its own point, then shift it along its normal.
+
+    Parameters
+    ----------
+    plane : SymmetryPlane
+    surface : OuterSurface
+        Its axes say what is upright.
+    turn_deg, lean_deg : float
+        About the upright axis, and to a side.
+    shift_mm : float
+        Towards the patient's left.
+
+    Returns
+    -------
+    SymmetryPlane
+    """
     _, back, up = surface.grid.axes
-    normal = plane.normal + np.tan(np.radians(turn)) * back + np.tan(np.radians(lean)) * up
+    normal = plane.normal + np.tan(np.radians(turn_deg)) * back + np.tan(np.radians(lean_deg)) * up
     normal = normal / np.linalg.norm(normal)
-    return replace(plane, point=plane.point + shift * normal, normal=normal)
+    return replace(plane, point=plane.point + shift_mm * normal, normal=normal)
 
 
 def _mirror_view(
@@ -172,19 +199,10 @@ def _mirror_view(
     left, top = _SIDE + 45, 34
     canvas.place(coloured(residual[np.ix_(rows, rows)], _TOP), left, top)
     canvas.text(left, 22, "the vault from above: residual (mm)")
-    for x, y, letter in (
-        (side / 2, 12, "A"),
-        (side / 2, side - 12, "P"),
-        (12, side / 2, "R"),
-        (side - 12, side / 2, "L"),
-    ):
-        canvas.text(left + x, top + y, letter, size=14, anchor="mm", halo=True)
-    ramp = np.broadcast_to(np.linspace(0, _TOP, side, dtype=np.float32), (14, side))
-    canvas.place(coloured(ramp, _TOP), left, _SIDE - 46)
-    canvas.text(left, _SIDE - 12, "0 mm", size=12, colour=GREY)
-    canvas.text(left + side, _SIDE - 12, f"{_TOP:g} mm or more", size=12, colour=GREY, anchor="rs")
+    draw_sides(canvas, (left, top, side, side))
+    draw_colour_scale(canvas, (left, _SIDE - 46), side, _TOP)
     known = residual[np.isfinite(residual)]
-    line = "Turned by {turn:g} and leaning by {lean:g} degrees, shifted by {shift:g} mm: ".format(**move)
+    line = "Turned by {turn_deg:g} and leaning by {lean_deg:g} degrees, shifted by {shift_mm:g} mm: ".format(**move)
     if not len(known):
         return View(canvas.array(), line + "no ray has a partner.")
     return View(canvas.array(), line + f"residual {np.median(known):.2f} mm (median), {known.mean():.2f} mm (mean).")
@@ -192,22 +210,20 @@ def _mirror_view(
 
 def _mirrored_slice(bone: Volume, mirror: SymmetryPlane, plane: int) -> Canvas:
     """A slice: bone, its mirror image, what both share, and the plane."""
+    # the mirror image of the slice: each pixel shows the voxel that its mirrored place falls on
     mask = bone.voxels[plane]
     pixels = np.stack([np.full(mask.shape, plane), *np.indices(mask.shape)], axis=-1)
     world = bone.to_world(pixels.reshape(-1, 3))
-    index = np.rint(bone.to_voxel(mirror.mirror(world))).astype(np.intp)
-    inside = ((index >= 0) & (index < bone.shape)).all(axis=1)
-    image = np.zeros(mask.size, bool)
-    image[inside] = bone.voxels[tuple(index[inside].T)]
-    image = image.reshape(mask.shape)
+    image = bone.at(mirror.mirror(world), outside=False).reshape(mask.shape)
     canvas = Canvas(_SIDE, _SIDE)
     window = Window.whole((0, 0, _SIDE, _SIDE), mask.shape)
     canvas.show(tinted(tinted(tinted(plain(mask.shape), image, SKY), mask, ORANGE), mask & image, BONE), window)
+    # the plane, where the side changes along a row
     side = mirror.distance(world).reshape(mask.shape) > 0
     rows = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
     if len(rows):
         canvas.line(window.px(np.column_stack([rows, side[rows].argmax(axis=1) - 0.5])), BLACK, width=1.5, dash=(8, 5))
-    dress(canvas, window, bone, plane)
+    annotate_slice(canvas, window, bone, plane)
     entries = [(BONE, "area", "both"), (ORANGE, "area", "bone"), (SKY, "area", "mirror")]
     canvas.legend(110, 170, [*entries, (BLACK, "dash", "plane")])  # within the ring of bone
     return canvas

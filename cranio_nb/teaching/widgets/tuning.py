@@ -12,16 +12,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...drawing.canvas import BLACK, BLUE, GREY, Canvas
-from ...methods import slicewise
-from ...pipeline import run
-from ...pipeline.run import TruthCheck
-from ...prosthesis import Prosthesis
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BLACK, BLUE, GREY
+from ...evaluation.against_truth import TruthCheck, check_truth
+from ...methods.design import design
+from ...prosthesis import OUTER
 from ...vault import opening_search
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
+from .evaluation import DistanceMap, map_distances
 from .panel import Panel
-from .solid import DistanceMap, coloured, distance_map, put_view
+from .parts import coloured, put_view
 
 if TYPE_CHECKING:
     from data_synth import Case
@@ -43,15 +44,31 @@ _MEASURES = (
 
 
 class Tuner(Panel):
-    """A panel over the parameters of `methods.slicewise.design`."""
+    """A panel over the options of the method `slicewise`."""
 
     @property
     def parameters(self) -> dict[str, Any]:
-        """The options that the controls stand for, as `cranio-nb design --params` and `slicewise.design` take them."""
+        """The options that the controls mean.
+
+        Returns
+        -------
+        dict
+            As `cranio-nb design --params` and `cn.design` take them.
+        """
         return options_of(**self.values)
 
     def save(self, path: str | Path = FILE) -> Path:
-        """Write the parameters as JSON."""
+        """Write the parameters as JSON.
+
+        Parameters
+        ----------
+        path : path
+
+        Returns
+        -------
+        Path
+            The file.
+        """
         path = Path(path)
         path.write_text(json.dumps(self.parameters, indent=2) + "\n", encoding="utf-8")
         return path
@@ -64,6 +81,11 @@ def tuner(case: Case) -> Tuner:
     ----------
     case : Case
         From `data_synth.phantom_case`; "tiny" answers within about two seconds, at once where it was before.
+
+    Returns
+    -------
+    Tuner
+        Its controls are those options and ``own``: whether ``pressure`` is set by hand.
     """
     bone, truth = Volume(case.bone, case.affine), Volume(case.implant, case.affine)
     openings = opening_search.find_openings(bone)
@@ -88,7 +110,7 @@ def tuner(case: Case) -> Tuner:
     actions = {"save the parameters": lambda panel: f"Written: {panel.save()}"}
     return Tuner(
         controls,
-        lambda **values: tuner_view(made(*values.values()), first, values),
+        lambda **values: _view(made(*values.values()), first, values),
         alt=alt,
         actions=actions,
         slow=True,
@@ -108,7 +130,21 @@ def options_of(
     rigidity: float,
     smooth: bool,
 ) -> dict[str, Any]:
-    """Options of `slicewise.design` for the values of the controls."""
+    """Options of the method `slicewise` for the values of the controls.
+
+    Parameters
+    ----------
+    slices : str
+        One of `SLICES`.
+    own : bool
+        Whether `pressure` is heeded; else it follows from the end tangents.
+    directions, skip, reach, coupling, pressure, n_snaxels, tension, rigidity, smooth
+        As for the method.
+
+    Returns
+    -------
+    dict
+    """
     return {
         "axial": slices == SLICES[0],
         "directions": directions,
@@ -128,24 +164,26 @@ Measured = tuple[tuple[float, ...], DistanceMap]
 
 def _measured(bone: Volume, truth: Volume, openings: tuple[Any, ...], options: dict[str, Any]) -> Measured:
     """Measures of one design in the order of `_MEASURES`, and its map of distances."""
-    made = slicewise.design(bone, openings, **options)
-    check = run.check_truth(made, truth, bone, openings[0])
-    return measures(made, check), distance_map(made, check.prosthesis, 0)
+    made = design(bone, openings, method="slicewise", **options)
+    check = check_truth(made, truth, bone, openings[0].head_centre)
+    return _measures(check), map_distances(made, check.prosthesis, OUTER)
 
 
-def measures(made: Prosthesis, check: TruthCheck) -> tuple[float, ...]:
+def _measures(check: TruthCheck) -> tuple[float, ...]:
     """The numbers of the table, in its order."""
     score = check.score
     sides = (float(np.mean(check.distances[side])) for side in ("outer", "inner"))
     return score.dice, score.border_dice, score.hd95, score.assd, *sides, score.volume_ratio
 
 
-def tuner_view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
+def _view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
     """Map and table of a design, beside the numbers of the first one."""
-    canvas, seen = Canvas(_WIDTH + 390, _HEIGHT + _CAPTION), Canvas(_WIDTH + 1, _HEIGHT)
-    put_view(seen, coloured(now[1].seen, _TOP), now[1].px)
-    canvas.inlay(seen, 0, _CAPTION)
+    canvas, view = Canvas(_WIDTH + 390, _HEIGHT + _CAPTION), Canvas(_WIDTH + 1, _HEIGHT)
+    # the map of distances
+    put_view(view, coloured(now[1].picture, _TOP), now[1].px)
+    canvas.inlay(view, 0, _CAPTION)
     canvas.text(14, 22, f"distance of the outer side: blue 0, yellow {_TOP:g} mm and more", size=12, colour=GREY)
+    # the table: each measure at the start and now
     left = _WIDTH + 20
     for x, name in ((left + 240, "at the start"), (left + 350, "now")):
         canvas.text(x, 50, name, size=13, colour=GREY, anchor="rs")

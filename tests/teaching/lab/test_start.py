@@ -85,8 +85,10 @@ BINDER = Path(__file__).parents[3] / "binder"
 def test_binder_installs_what_is_there():
     build = (BINDER / "postBuild").read_text()
     root = BINDER.parent
-    assert all((root / name).is_file() for name in ("constraints.txt", "cranio_nb/lab_settings/overrides.json"))
-    assert "constraints.txt" in build and "cranio_nb/lab_settings/overrides.json" in build
+    assert all(
+        (root / name).is_file() for name in ("constraints.txt", "cranio_nb/teaching/lab/settings/overrides.json")
+    )
+    assert "constraints.txt" in build and "cranio_nb/teaching/lab/settings/overrides.json" in build
     assert "libosmesa6" in (BINDER / "apt.txt").read_text().split()
     assert all((BINDER / name).stat().st_mode & 0o111 for name in ("postBuild", "start"))
     for name in ("postBuild", "start"):

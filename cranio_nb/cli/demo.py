@@ -1,0 +1,42 @@
+"""The command `cranio-nb demo`: a synthetic head, its prosthesis, and how good that is."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from .options import PATH, SIZES, check_case_folder, debug
+
+
+@click.command()
+@click.option("--out", type=PATH, default=Path("cranio_nb_out/demo"), show_default=True, help="Folder to write to.")
+@click.option("--size", type=click.Choice(SIZES), default="full", show_default=True, help="Grid of the synthetic CT.")
+@debug
+def demo(out: Path, size: str) -> None:
+    """Design and score a prosthesis for a synthetic head CT.
+
+    The CT is written as a DICOM series into OUT/ct and read back like any other scan. "full" is the size of the
+    paper's scan, 512 x 512 x 68.
+
+    \b
+    Examples:
+      cranio-nb demo
+      cranio-nb demo --size tiny --out demo_tiny
+    """
+    from data_synth import phantom_case
+    from data_synth.files import write_case
+
+    from ..output.design_folder import FILES, write_outputs
+    from ..output.staging import check_folder, staged
+    from ..pipeline.run import run_design
+    from .console import print_result, progress_bar
+
+    check_folder(out, FILES)
+    check_case_folder(out)
+    with progress_bar() as progress, staged(out) as part:
+        progress("synthetic CT", 0.0)
+        write_case(part, phantom_case(size, "unilateral", 0))
+        result = run_design(part / "ct", truth=part / "truth.nii.gz", progress=progress)
+        write_outputs(result, part, progress)
+    print_result(result, out)

@@ -1,0 +1,77 @@
+"""The command `cranio-nb design`: scan -> prosthesis, with its report."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from ..methods.catalogue import METHODS, PRESETS
+from .options import PATH, allow, check_not_input, debug, mask, parse_planes, read_params, threshold, truth
+
+
+@click.command()
+@click.argument("scan", type=PATH, metavar="INPUT")
+@click.option("--out", type=PATH, required=True, help="Folder to write to; made if missing.")
+@click.option("--method", type=click.Choice(tuple(METHODS)), default="slicewise", show_default=True)
+@click.option(
+    "--preset", type=click.Choice(PRESETS), default="default", show_default=True, help="paper: as published in 2011."
+)
+@click.option("--params", type=PATH, metavar="JSON", help="File with options of the method: {name: value, ...}.")
+@click.option("--prior", type=PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate.")
+@click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
+@truth
+@mask
+@threshold
+@allow
+@debug
+def design(
+    scan: Path,
+    out: Path,
+    method: str,
+    preset: str,
+    params: Path | None,
+    prior: Path | None,
+    planes: str | None,
+    truth: Path | None,
+    mask: bool,
+    threshold: float | None,
+    allow: tuple[str, ...],
+) -> None:
+    """Design the prosthesis that closes the hole in a skull.
+
+    INPUT is a folder of DICOM files, or a NIfTI or NRRD file with a CT in HU or a bone mask. Written are
+    prosthesis.stl (world mm, LPS), patch.nii.gz (on the input's grid), design.json and report.html; all or nothing.
+
+    \b
+    Examples:
+      cranio-nb design scans/head_ct --out out
+      cranio-nb design skull.nii.gz --mask --preset paper --out out
+      cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
+    """
+    from ..output.design_folder import FILES, write_outputs
+    from ..output.staging import check_folder, staged
+    from ..pipeline.run import run_design
+    from .console import print_result, progress_bar
+
+    # everything that can be refused without reading the scan comes first
+    options, between = read_params(method, params), parse_planes(planes)
+    options |= {} if prior is None else {"prior": str(prior)}
+    check_not_input(out, scan)
+    check_folder(out, FILES)
+    with progress_bar() as progress:
+        result = run_design(
+            scan,
+            method=method,
+            preset=preset,
+            options=options,
+            mask=mask or None,
+            threshold=threshold,
+            planes=between,
+            truth=truth,
+            allow=allow,
+            progress=progress,
+        )
+        with staged(out) as part:
+            write_outputs(result, part, progress)
+    print_result(result, out)

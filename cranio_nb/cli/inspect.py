@@ -1,0 +1,54 @@
+"""The command `cranio-nb inspect`: how a scan is read, and where its skull is open."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from ..errors import CranioError
+from ..readers import read_ct
+from .options import PATH, allow, as_json, debug, mask, threshold
+
+if TYPE_CHECKING:
+    from ..evaluation.opening_size import OpeningSize
+
+
+@click.command()
+@click.argument("scan", type=PATH, metavar="INPUT")
+@mask
+@threshold
+@allow
+@as_json
+@debug
+def inspect(scan: Path, mask: bool, threshold: float | None, allow: tuple[str, ...], as_json: bool) -> None:
+    """Show how a scan is read and which openings its skull has.
+
+    \b
+    Examples:
+      cranio-nb inspect scans/head_ct
+      cranio-nb inspect skull.nrrd --mask --json
+    """
+    from ..evaluation.opening_size import measure_opening
+    from ..output.design_folder import load_record
+    from ..stages.segmentation import bone_of
+    from ..vault.opening_search import find_openings
+    from .console import print_json, print_load, print_openings, progress_bar
+
+    with progress_bar() as progress:
+        volume, load = read_ct(scan, mask=mask or None, allow=allow, progress=lambda i, n: progress("reading", i / n))
+    # what was read is printed also where the skull is refused; the refusal ends the command
+    problem: CranioError | None = None
+    sizes: list[OpeningSize] = []
+    try:
+        sizes = [measure_opening(one) for one in find_openings(bone_of(volume, threshold))]
+    except CranioError as error:
+        problem = error
+    if as_json:
+        print_json({"load": load_record(load), "openings": sizes, "problem": problem and problem.code})
+    else:
+        print_load(load)
+        print_openings(sizes)
+    if problem:
+        raise problem

@@ -1,0 +1,54 @@
+"""The command `cranio-nb score`: a patch against the bone that is missing."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import click
+
+from ..readers import read_ct
+from .options import PATH, allow, as_json, debug, mask, threshold
+
+_UNITS = {"hd95": "mm", "assd": "mm", "rmse": "mm", "overlap": "voxels"}
+
+
+@click.command()
+@click.argument("patch", type=PATH)
+@click.argument("truth", type=PATH)
+@click.option("--skull", type=PATH, required=True, help="Skull with the hole: bone mask, or a CT.")
+@mask
+@threshold
+@allow
+@as_json
+@debug
+def score(
+    patch: Path,
+    truth: Path,
+    skull: Path,
+    mask: bool,
+    threshold: float | None,
+    allow: tuple[str, ...],
+    as_json: bool,
+) -> None:
+    """Measure a patch against the true one; all three on one grid.
+
+    The skull's bone is found as `cranio-nb design` finds it: give --mask, --threshold and --allow as there.
+
+    \b
+    Examples:
+      cranio-nb score out/patch.nii.gz case1/truth.nii.gz --skull case1/ct
+      cranio-nb score patch.nrrd truth.nrrd --skull skull.nrrd --json
+    """
+    from ..evaluation import scores
+    from ..stages.segmentation import bone_of
+    from .console import print_json, print_table
+
+    (made, _), (true, _) = read_ct(patch, mask=True), read_ct(truth, mask=True)
+    scan, _ = read_ct(skull, mask=mask or None, allow=allow)
+    # the same bone that a design of this scan starts from
+    found = dataclasses.asdict(scores.score(made, true, bone_of(scan, threshold)))
+    if as_json:
+        print_json(found)
+        return
+    print_table("", ("Measure", "Value", "Unit"), [(k, f"{v:.4g}", _UNITS.get(k, "")) for k, v in found.items()])

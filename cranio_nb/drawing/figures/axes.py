@@ -1,0 +1,196 @@
+"""Figures with one axis, and what every picture has: scale bar, letters, masks, colour scale.
+
+The only importer of matplotlib; figures are made without any global state.
+"""
+
+from __future__ import annotations
+
+import io
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from numpy.typing import NDArray
+
+from ..palette import BLACK, MIDDLE_GREY, rgb_shares, side_letter
+
+DPI = 110
+
+
+def new_figure(width_in: float, height_in: float) -> tuple[Figure, Axes]:
+    """A figure that is one empty axis.
+
+    Parameters
+    ----------
+    width_in, height_in : float
+        Inches.
+
+    Returns
+    -------
+    Figure
+    Axes
+        Without frame and ticks, over all of the figure.
+
+    Examples
+    --------
+    >>> figure, ax = new_figure(3.0, 2.0)
+    >>> ax.get_window_extent().size.tolist()
+    [330.0, 220.0]
+    """
+    figure = Figure(figsize=(width_in, height_in), dpi=DPI)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
+    axes.set_axis_off()
+    return figure, axes
+
+
+def png(figure: Figure) -> bytes:
+    """A figure as PNG.
+
+    Parameters
+    ----------
+    figure : Figure
+
+    Returns
+    -------
+    bytes
+        The same for equal figures.
+
+    Examples
+    --------
+    >>> png(new_figure(1.0, 1.0)[0])[1:4]
+    b'PNG'
+    """
+    stream = io.BytesIO()
+    figure.savefig(stream, format="png", dpi=figure.dpi, metadata={"Software": None})
+    return stream.getvalue()
+
+
+def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str = BLACK) -> None:
+    """Draw a scale bar in the lower left corner; call it last, when the limits of the axis are set.
+
+    Parameters
+    ----------
+    ax : Axes
+    length : float
+        In units of the axis.
+    label : str, optional
+        Its length in words; by default `length` in mm.
+    colour : str
+    """
+    (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
+    x, y = x0 + 0.03 * (x1 - x0), y0 + 0.03 * (y1 - y0)
+    step = length * np.sign(x1 - x0)
+    ax.plot([x, x + step], [y, y], color=colour, lw=3, solid_capstyle="butt")
+    text = f"{length:g} mm" if label is None else label
+    ax.text(x, y + 0.02 * (y1 - y0), text, color=colour, fontsize=8, va="bottom", ha="left")
+
+
+def name_sides(ax: Axes, right_down: NDArray[np.float64]) -> None:
+    """Write the letters of the patient's sides at the edges of a view: right, left and below.
+
+    Parameters
+    ----------
+    ax : Axes
+    right_down : ndarray, shape (2 or more, 3)
+        World directions (LPS) to the right and down in the picture.
+    """
+    right, down = right_down[:2]
+    for x, y, direction in ((0.99, 0.5, right), (0.01, 0.5, -right), (0.5, 0.99, -down)):
+        across, up = {0.99: "right", 0.01: "left"}.get(x, "center"), "top" if y > 0.9 else "center"
+        letter, style = side_letter(direction), {"ha": across, "va": up, "color": MIDDLE_GREY}
+        ax.text(x, y, letter, style, transform=ax.transAxes, fontsize=9, weight="bold")
+
+
+def fill_mask(
+    ax: Axes, mask: NDArray[np.bool_], extent: tuple[float, float, float, float], colour: str, *, alpha: float = 1.0
+) -> None:
+    """Show a mask in one colour, clear elsewhere.
+
+    Parameters
+    ----------
+    ax : Axes
+    mask : ndarray of bool, shape (R, C)
+    extent : tuple of float
+        Left, right, bottom and top edge of the mask, in units of the axis.
+    colour : str
+        "#RRGGBB".
+    alpha : float
+        0 clear to 1 opaque.
+    """
+    rgba = np.zeros((*mask.shape, 4))
+    rgba[mask] = (*rgb_shares(colour), alpha)
+    ax.imshow(rgba, extent=extent, interpolation="nearest")
+
+
+def show_pixels(rgb: NDArray[np.floating] | NDArray[np.uint8]) -> tuple[Figure, Axes]:
+    """Show pixels, one for one.
+
+    Parameters
+    ----------
+    rgb : ndarray, shape (H, W, 3)
+        0 to 1, or uint8.
+
+    Returns
+    -------
+    Figure
+    Axes
+        In pixels: x to the right, y down.
+
+    Examples
+    --------
+    >>> figure, _ = show_pixels(np.ones((55, 110, 3)))
+    >>> figure.get_size_inches().tolist()
+    [1.0, 0.5]
+    """
+    height, width = rgb.shape[:2]
+    figure, ax = new_figure(width / DPI, height / DPI)
+    ax.imshow(rgb, interpolation="nearest", aspect="auto")
+    return figure, ax
+
+
+def colour_scale(top: float) -> ScalarMappable:
+    """The colours of numbers from 0 to `top`: cividis, which reads the same for the colour-blind.
+
+    Parameters
+    ----------
+    top : float
+        Number at the yellow end, e.g. a distance in mm.
+
+    Returns
+    -------
+    ScalarMappable
+        Its `to_rgba` turns numbers into red, green, blue and 1.
+
+    Examples
+    --------
+    >>> colour_scale(2.0).to_rgba([0.0, 2.0, 9.0]).round(1).tolist()
+    [[0.0, 0.1, 0.3, 1.0], [1.0, 0.9, 0.2, 1.0], [1.0, 0.9, 0.2, 1.0]]
+    """
+    return ScalarMappable(Normalize(0.0, top), "cividis")
+
+
+def colour_bar_figure(top_mm: float, label: str) -> Figure:
+    """The scale of distance maps.
+
+    Parameters
+    ----------
+    top_mm : float
+        Distance at its upper end.
+    label : str
+        What the colours mean, with the unit.
+
+    Returns
+    -------
+    Figure
+    """
+    figure = Figure(figsize=(3.6, 0.62), dpi=DPI)
+    FigureCanvasAgg(figure)
+    axes = figure.add_axes((0.05, 0.62, 0.9, 0.26))
+    bar = figure.colorbar(colour_scale(top_mm), cax=axes, orientation="horizontal", extend="max")
+    bar.ax.tick_params(labelsize=8)
+    bar.set_label(label, fontsize=8)
+    return figure

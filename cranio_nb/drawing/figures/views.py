@@ -1,0 +1,115 @@
+"""Surfaces -> shaded views and distance maps, with the patient's sides and a scale bar."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...mesh import Mesh
+from ..palette import NO_VALUE, PROSTHESIS, SKULL, rgb_shares
+from ..shading import Picture, Solid, render, view_axes
+from .axes import Axes, Figure, colour_scale, name_sides, scale_bar, show_pixels
+
+SIDES = {
+    "from the left": (1.0, 0.0, 0.0),
+    "from the right": (-1.0, 0.0, 0.0),
+    "from the front": (0.0, -1.0, 0.0),
+    "from the back": (0.0, 1.0, 0.0),
+    "from above": (0.0, 0.0, 1.0),
+}
+"""Directions from the head to the viewer, LPS."""
+_RIM_PX = 14  # left free around a view
+_LIFT_MM = 0.05  # of a coloured side before the same faces of the whole
+
+
+def views_of(directions: Sequence[ArrayLike]) -> dict[str, NDArray[np.float64]]:
+    """Three directions to look from: facing the largest opening, and two sides that show the openings.
+
+    Parameters
+    ----------
+    directions : sequence of array_like, shape (3,)
+        From the head's centre to each opening, LPS, the largest first.
+
+    Returns
+    -------
+    dict of str to ndarray, shape (3,)
+        Name of the view -> direction from the head to the viewer, LPS.
+
+    Examples
+    --------
+    >>> list(views_of([(0.9, 0.1, 0.4)]))
+    ['facing the opening', 'from the left', 'from above']
+    """
+    towards = np.array(directions, float)
+    views, seen = {"facing the opening": towards[0]}, towards @ towards[0]
+    for _ in range(2):
+        rest = {name: towards @ side for name, side in SIDES.items() if name not in views}
+        # first the side that shows what is not yet seen well, then the one that shows most
+        best = max(
+            rest, key=lambda name: (np.clip(rest[name] - seen, 0, None).sum(), np.clip(rest[name], 0, None).sum())
+        )
+        views[best], seen = np.array(SIDES[best]), np.maximum(seen, rest[best])
+    return views
+
+
+def view_figure(skull: Mesh, prosthesis: Mesh, towards: ArrayLike, *, px_mm: float = 0.6) -> Figure:
+    """Skull and prosthesis, shaded.
+
+    Parameters
+    ----------
+    skull, prosthesis : Mesh
+        World mm; the skull may be empty.
+    towards : array_like, shape (3,)
+        From the head to the viewer, LPS.
+    px_mm : float
+        Size of a pixel.
+
+    Returns
+    -------
+    Figure
+    """
+    solids = [Solid(prosthesis, rgb_shares(PROSTHESIS))]
+    if len(skull.faces):
+        solids.insert(0, Solid(skull, rgb_shares(SKULL)))
+    figure, ax = _with_rim(render(solids, towards, px_mm=px_mm))
+    name_sides(ax, view_axes(towards))
+    scale_bar(ax, 50.0 / px_mm, "50 mm")
+    return figure
+
+
+def distance_figure(
+    whole: Mesh, surface: Mesh, distances: NDArray, towards: ArrayLike, *, top_mm: float, px_mm: float = 0.2
+) -> Figure:
+    """One side of a prosthesis, coloured by the distance of its nodes from the true surface; the rest is grey.
+
+    Parameters
+    ----------
+    whole, surface : Mesh
+        The prosthesis, and its side as an open surface.
+    distances : ndarray, shape (V,)
+        mm, of the vertices of `surface`.
+    towards : array_like, shape (3,)
+        From the surface to the viewer, LPS.
+    top_mm : float
+        Distance at the upper end of the colour scale.
+    px_mm : float
+        Size of a pixel.
+
+    Returns
+    -------
+    Figure
+    """
+    near = np.asarray(towards, float) / np.linalg.norm(towards) * _LIFT_MM
+    coloured = Solid(Mesh(surface.vertices + near, surface.faces), colour_scale(top_mm).to_rgba(distances)[:, :3])
+    solids = [Solid(whole, rgb_shares(NO_VALUE)), coloured]
+    figure, ax = _with_rim(render(solids, towards, px_mm=px_mm, shaded=False))
+    name_sides(ax, view_axes(towards))
+    scale_bar(ax, 20.0 / px_mm, "20 mm")
+    return figure
+
+
+def _with_rim(picture: Picture) -> tuple[Figure, Axes]:
+    """A rendered picture with room around it for letters and scale."""
+    return show_pixels(np.pad(picture.rgb, ((_RIM_PX, 2 * _RIM_PX), (_RIM_PX, _RIM_PX), (0, 0)), constant_values=1))

@@ -1,0 +1,173 @@
+"""Arrays by their indices, and the order of their axes: what `Volume` and the grids of rays share.
+
+Frames: any array index, fractions allowed; world (x, y, z) in mm, DICOM LPS.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Affine = NDArray[np.float64]
+Box = tuple[slice, slice, slice]
+"""Part of a grid: a range of planes, of rows and of columns, with steps of 1."""
+
+# Axis order of the package: planes rise to the top of the head (z), rows to the back (y), columns to the left (x).
+_WORLD_AXIS = (2, 1, 0)
+
+
+@dataclass(frozen=True)
+class AxisOrder:
+    """New axis i is old axis `axes[i]`, reversed where `flips[i]`.
+
+    Parameters
+    ----------
+    axes : tuple of int
+        A permutation of 0, 1, 2.
+    flips : tuple of bool
+    """
+
+    axes: tuple[int, int, int]
+    flips: tuple[bool, bool, bool]
+
+    @property
+    def inverse(self) -> AxisOrder:
+        """The order that undoes this one.
+
+        Returns
+        -------
+        AxisOrder
+        """
+        back = tuple(int(i) for i in np.argsort(self.axes))
+        return AxisOrder((back[0], back[1], back[2]), (self.flips[back[0]], self.flips[back[1]], self.flips[back[2]]))
+
+
+def canonical_order(affine: Affine) -> AxisOrder:
+    """The axis order that turns a grid into the package's own (planes up, rows back, columns left).
+
+    Parameters
+    ----------
+    affine : ndarray, shape (4, 4)
+        Array index -> world mm (LPS) of the grid as stored.
+
+    Returns
+    -------
+    AxisOrder
+
+    Examples
+    --------
+    >>> canonical_order(np.diag([-0.5, 0.5, 3.0, 1.0]))  # columns to the right, rows back, planes up
+    AxisOrder(axes=(2, 1, 0), flips=(False, False, True))
+    """
+    directions = affine[:3, :3] / np.linalg.norm(affine[:3, :3], axis=0)
+    best = max(
+        ((a, b, c) for a in range(3) for b in range(3) for c in range(3) if {a, b, c} == {0, 1, 2}),
+        key=lambda axes: sum(abs(directions[w, a]) for w, a in zip(_WORLD_AXIS, axes, strict=True)),
+    )
+    flips = [bool(directions[w, a] < 0) for w, a in zip(_WORLD_AXIS, best, strict=True)]
+    return AxisOrder(best, (flips[0], flips[1], flips[2]))
+
+
+def inside_grid(index: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Whether fractional indices round to an element of an array.
+
+    Parameters
+    ----------
+    index : array_like, shape (..., k)
+    shape : tuple of int
+        k numbers.
+
+    Returns
+    -------
+    ndarray of bool, shape (...)
+
+    Examples
+    --------
+    >>> inside_grid([[0.4, 2.4], [0.4, 2.6]], (1, 3))
+    array([ True, False])
+    """
+    nearest = np.rint(np.moveaxis(np.asarray(index, float), -1, 0))
+    return np.logical_and.reduce([(i >= 0) & (i < n) for i, n in zip(nearest, shape, strict=True)])
+
+
+def nearest_values(values: NDArray, index: ArrayLike, *, outside: float) -> NDArray:
+    """Values of the array elements nearest to fractional indices; a half goes to the even element.
+
+    Parameters
+    ----------
+    values : ndarray of k dimensions
+    index : array_like, shape (..., k)
+    outside : scalar
+        Value where the array has no element.
+
+    Returns
+    -------
+    ndarray, shape (...)
+
+    Examples
+    --------
+    >>> nearest_values(np.array([3, 4, 5]), [[0.6], [7.0]], outside=0)
+    array([4, 0])
+    """
+    inside = inside_grid(index, values.shape)
+    nearest = (np.rint(i) for i in np.moveaxis(np.asarray(index, float), -1, 0))
+    return np.where(inside, values[tuple(np.where(inside, i, 0).astype(np.intp) for i in nearest)], outside)
+
+
+def box_around(index: ArrayLike, shape: tuple[int, int, int], margin: ArrayLike = 0) -> Box:
+    """Smallest box of a grid that holds fractional indices, grown by a margin and clipped to the grid.
+
+    Parameters
+    ----------
+    index : array_like, shape (n, 3)
+        Voxel (plane, row, col); n > 0.
+    shape : tuple of int
+        Of the grid.
+    margin : int or array_like of int, shape (3,)
+        Voxels on each side.
+
+    Returns
+    -------
+    tuple of slice
+        Of at least one voxel along each axis.
+
+    Examples
+    --------
+    >>> box_around([[1.2, 2.0, 3.0], [1.7, 2.0, 4.0]], (9, 9, 5), margin=1)
+    (slice(0, 4, None), slice(1, 4, None), slice(2, 5, None))
+    """
+    index, margin, last = np.asarray(index), np.asarray(margin), np.array(shape) - 1
+    low = np.clip(np.floor(index.min(axis=0)).astype(int) - margin, 0, last)
+    high = np.clip(np.ceil(index.max(axis=0)).astype(int) + margin, low, last) + 1
+    planes, rows, cols = (slice(int(a), int(b)) for a, b in zip(low, high, strict=True))
+    return planes, rows, cols
+
+
+def move_affine(affine: Affine, start: ArrayLike, step: ArrayLike = 1) -> Affine:
+    """Affine of another grid along the same axes.
+
+    Parameters
+    ----------
+    affine : ndarray, shape (4, 4)
+        Voxel index -> world mm of the first grid.
+    start : array_like, shape (3,)
+        Fractional index, on the first grid, of the other's first voxel.
+    step : float or array_like, shape (3,)
+        Voxels of the first grid from each voxel of the other to its next.
+
+    Returns
+    -------
+    ndarray, shape (4, 4)
+        Voxel index of the other grid -> world mm.
+
+    Examples
+    --------
+    >>> move_affine(np.eye(4), (0.5, 0.5, 0.5), 2)[0]
+    array([2. , 0. , 0. , 0.5])
+    """
+    moved = affine.copy()
+    moved[:3, 3] = np.asarray(start, float) @ affine[:3, :3].T + affine[:3, 3]
+    moved[:3, :3] *= np.asarray(step, float)
+    return moved

@@ -1,0 +1,306 @@
+"""DICOM file -> its data set up to the pixels, and where the pixels lie. Nothing is decoded.
+
+The file is not trusted: sides, frames and inflated size are capped here, before anything is allocated for them.
+"""
+
+from __future__ import annotations
+
+import io
+import struct
+import warnings
+import zlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import BinaryIO
+
+from pydicom.datadict import tag_for_keyword
+from pydicom.dataset import Dataset
+from pydicom.filereader import read_dataset
+from pydicom.tag import BaseTag
+from pydicom.uid import DeflatedExplicitVRLittleEndian, ExplicitVRBigEndian, ImplicitVRLittleEndian
+
+from ...errors import InputRefused
+
+MAX_SIDE = 4096  # rows, columns
+MAX_SLICES = 4000
+MAX_INFLATED = 256 * 2**20  # bytes of one inflated file
+UNDEFINED_LENGTH = 0xFFFFFFFF
+# CT images, classic and multi-frame; some writers leave the class out
+CT_CLASSES = {"", "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.2.1", "1.2.840.10008.5.1.4.1.1.2.2"}
+_FLOAT_PIXELS = (0x7FE00008, 0x7FE00009)
+_PIXELS = (*_FLOAT_PIXELS, 0x7FE00010)
+_ITEM, _SEQUENCE_END = 0xFFFEE000, 0xFFFEE0DD
+_KEYWORDS = (
+    "SOPClassUID Modality ImageType SeriesInstanceUID StudyInstanceUID SeriesNumber AcquisitionNumber InstanceNumber "
+    "ContentTime ConvolutionKernel PatientID PatientName PatientBirthDate FrameOfReferenceUID Rows Columns "
+    "SamplesPerPixel PhotometricInterpretation BitsAllocated BitsStored HighBit PixelRepresentation NumberOfFrames "
+    "PixelSpacing ImagePositionPatient ImageOrientationPatient SliceThickness RescaleSlope RescaleIntercept "
+    "RescaleType ModalityLUTSequence PixelPaddingValue PixelPaddingRangeLimit LossyImageCompression "
+    "SharedFunctionalGroupsSequence PerFrameFunctionalGroupsSequence"
+).split()
+_TAGS: list[BaseTag | int] = [BaseTag(tag) for tag in map(tag_for_keyword, _KEYWORDS) if tag is not None]
+
+
+@dataclass(frozen=True)
+class PixelPlace:
+    """Where the pixel data of a file lie.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    file : int
+        Its index among the folder's files, for messages.
+    syntax : str
+        UID of the transfer syntax.
+    offset : int
+        Bytes from the start of the file (inflated, where it is deflated) to the pixel data.
+    length : int
+        Bytes of pixel data; `UNDEFINED_LENGTH` for encapsulated data.
+    is_float : bool
+        Whether they are floating-point numbers.
+    """
+
+    path: Path
+    file: int
+    syntax: str
+    offset: int
+    length: int
+    is_float: bool
+
+
+def looks_like_dicom(start: bytes) -> bool:
+    r"""Whether a file's first bytes are those of DICOM, with its preamble or without.
+
+    Parameters
+    ----------
+    start : bytes
+        136 or more.
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> looks_like_dicom(bytes(128) + b"DICM" + b"\x02\x00\x00\x00"), looks_like_dicom(bytes(136))
+    (True, False)
+    """
+    if start[128:132] == b"DICM":
+        return start[132:134] in (b"\x02\x00", b"\x08\x00", b"")
+    return len(start) >= 132 and start[:2] in (b"\x08\x00", b"\x02\x00") and start[3:4] == b"\x00"
+
+
+def parse_file(path: Path, file: int) -> tuple[Dataset, PixelPlace | None] | None:
+    """Parse one file: the elements that matter, and the place of its pixels.
+
+    Parameters
+    ----------
+    path : Path
+        A regular file.
+    file : int
+        Its index among the folder's files.
+
+    Returns
+    -------
+    (Dataset, PixelPlace or None) or None
+        None where the file is not DICOM; no place where it holds no pixel data.
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptDicom``, ``CorruptPixelData`` or ``LimitExceeded``, naming the file by its index.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from data_synth import write_dicom
+    >>> path = write_dicom("scan", np.zeros((8, 4, 6), np.int16), np.eye(4)[[2, 1, 0, 3]])[0]
+    >>> dataset, place = parse_file(path, 0)
+    >>> dataset.Rows, dataset.Columns, place.length
+    (4, 6, 48)
+    """
+    with open(path, "rb") as stream:
+        if not looks_like_dicom(stream.read(136)):
+            return None
+        with refusing(file):
+            return _parse_stream(stream, path, file)
+
+
+@contextmanager
+def refusing(file: int) -> Iterator[None]:
+    """Turn whatever the parsing of a file raises into one sentence that names the file by its index.
+
+    Parameters
+    ----------
+    file : int
+        Index among the folder's files.
+
+    Returns
+    -------
+    context manager
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptDicom``.
+
+    Examples
+    --------
+    >>> with refusing(7):
+    ...     int("no number")
+    Traceback (most recent call last):
+    cranio_nb.errors.InputRefused: DICOM file 7 of the folder cannot be parsed (ValueError). Copy the scan again ...
+    """
+    try:
+        with warnings.catch_warnings():
+            # odd values are judged later, when it is known whether they matter
+            warnings.simplefilter("ignore")
+            yield
+    except InputRefused:
+        raise
+    except Exception as error:
+        # a broken file may raise anything; its own words stay inside
+        raise corrupt(file, f"cannot be parsed ({type(error).__name__})") from None
+
+
+def corrupt(file: int, what: str, code: str = "CorruptDicom") -> InputRefused:
+    """The refusal for a damaged file.
+
+    Parameters
+    ----------
+    file : int
+        Index among the folder's files.
+    what : str
+        What is wrong with it: the end of a sentence.
+    code : str
+        Code of the refusal.
+
+    Returns
+    -------
+    InputRefused
+    """
+    return InputRefused(code, f"DICOM file {file} of the folder {what}.", "Copy the scan again from its source.")
+
+
+def open_dataset(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
+    """Read the meta elements of an open file, and come to the start of its data set.
+
+    Parameters
+    ----------
+    stream : binary stream
+        The whole file.
+    file : int
+        Index among the folder's files.
+
+    Returns
+    -------
+    meta : Dataset
+        Elements of group 2.
+    stream : binary stream
+        At the first element of the data set; in memory and inflated, where the file is deflated.
+
+    Raises
+    ------
+    InputRefused
+        ``LimitExceeded`` for more than `MAX_INFLATED` bytes.
+    """
+    stream.seek(128)
+    # without preamble the elements begin at once
+    if stream.read(4) != b"DICM":
+        stream.seek(0)
+    meta = read_dataset(stream, False, True, stop_when=lambda tag, vr, length: tag >> 16 != 2)
+    # deflated: everything behind the meta elements is one packed stream
+    if meta.get("TransferSyntaxUID") != DeflatedExplicitVRLittleEndian:
+        return meta, stream
+    inflate = zlib.decompressobj(-zlib.MAX_WBITS)
+    inflated = inflate.decompress(stream.read(), MAX_INFLATED)
+    if inflate.unconsumed_tail:
+        raise _over_limit(file, "bytes once inflated", f"more than {MAX_INFLATED}", MAX_INFLATED)
+    return meta, io.BytesIO(inflated)
+
+
+def _parse_stream(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace | None]:
+    """The elements before the pixels; the reading stops at the pixels and notes where that is."""
+    meta, data = open_dataset(stream, file)
+    syntax = str(meta.get("TransferSyntaxUID") or ImplicitVRLittleEndian)
+    places: list[PixelPlace] = []
+
+    def at_pixels(tag: int, vr: str | None, length: int) -> bool:
+        if tag in _PIXELS:
+            places.append(PixelPlace(path, file, syntax, data.tell(), length, tag in _FLOAT_PIXELS))
+        return tag in _PIXELS
+
+    implicit, little = syntax == ImplicitVRLittleEndian, syntax != ExplicitVRBigEndian
+    dataset = read_dataset(data, implicit, little, stop_when=at_pixels, specific_tags=_TAGS)
+
+    # what is declared must be there
+    if not places:
+        _check_end(data, meta, dataset, file)
+    if "Rows" in dataset or "Columns" in dataset:
+        _check_sides(dataset, file)
+    if places:
+        _check_length(data, places[0])
+    return dataset, places[0] if places else None
+
+
+def _check_end(data: BinaryIO, meta: Dataset, dataset: Dataset, file: int) -> None:
+    """A file without pixel data must end where its last element does, and must not be one that has an image."""
+    position, size = data.tell(), data.seek(0, io.SEEK_END)
+    if position != size or _last_is_cut(meta) or _last_is_cut(dataset):
+        raise corrupt(file, "ends in the middle of an element")
+    sop_class = dataset.get("SOPClassUID") or meta.get("MediaStorageSOPClassUID") or ""
+    if "Rows" not in dataset and sop_class in CT_CLASSES:
+        raise corrupt(file, "ends before its image")
+
+
+def _last_is_cut(dataset: Dataset) -> bool:
+    """Whether the last element holds fewer bytes than it declares."""
+    tags = list(dataset.keys())
+    last = dataset.get_item(tags[-1]) if tags else None
+    value, length = getattr(last, "value", None), getattr(last, "length", 0)
+    return isinstance(value, bytes) and len(value) != length
+
+
+def _check_sides(dataset: Dataset, file: int) -> None:
+    """Refuse images without size, or with one beyond the limits."""
+    sides = (("rows", "Rows", MAX_SIDE), ("columns", "Columns", MAX_SIDE), ("frames", "NumberOfFrames", MAX_SLICES))
+    for what, keyword, cap in sides:
+        declared = dataset.get(keyword, 1 if what == "frames" else None)
+        if declared is None or int(declared) < 1:
+            raise corrupt(file, f"declares no {what}")
+        if int(declared) > cap:
+            raise _over_limit(file, what, int(declared), cap)
+
+
+def _over_limit(file: int, what: str, declared: object, cap: int) -> InputRefused:
+    message = f"DICOM file {file} of the folder declares {declared} {what}; at most {cap} are read."
+    return InputRefused("LimitExceeded", message, "Check where the file comes from.")
+
+
+def _check_length(data: BinaryIO, place: PixelPlace) -> None:
+    """The declared pixel data must lie inside the file; encapsulated data must reach their end mark."""
+    size = data.seek(0, io.SEEK_END)
+    if place.length != UNDEFINED_LENGTH:
+        complete = place.offset + place.length <= size
+    else:
+        complete = _items_complete(data, place.offset, size)
+    if not complete:
+        raise corrupt(place.file, "is cut short: pixel data are missing", "CorruptPixelData")
+
+
+def _items_complete(data: BinaryIO, offset: int, size: int) -> bool:
+    """Whether the items of encapsulated pixel data follow each other up to their end mark."""
+    while offset + 8 <= size:
+        data.seek(offset)
+        group, element, length = struct.unpack("<HHL", data.read(8))
+        tag = group << 16 | element
+        # an end mark, or an item with its own length
+        if tag == _SEQUENCE_END:
+            return True
+        if tag != _ITEM or length == UNDEFINED_LENGTH:
+            return False
+        offset += 8 + length
+    return False

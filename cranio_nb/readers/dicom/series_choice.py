@@ -1,0 +1,311 @@
+"""Images of a folder -> the slices of the one head CT in it, and why the others were left.
+
+Images belong together when series, size, spacing, orientation and kind of image agree.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from ...errors import InputRefused
+from ..load_report import Finding
+from .geometry import MAX_STEP_MM, MIN_SLICES, axes_of, bad_geometry, check_geometry, sort_by_height
+from .parse import CT_CLASSES
+from .slice_header import SliceHeader
+
+_CT = ("CT", "")
+_STRAY = 3  # so few images are a scout or a reference picture, not a scan
+_HEAD_HEIGHT_MM = 150.0  # mm: a taller scan has no advantage over another
+_DIRECTION_TOL = 1e-4
+_FOLDER_REMEDY = "Give the folder that holds only the wanted series."
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """A group of images that could be the scan, with what the choice depends on.
+
+    Parameters
+    ----------
+    headers : list of SliceHeader
+    step : float
+        mm between slices, the median.
+    extent : float
+        mm from the bottom of the lowest slice to the top of the highest.
+    axial : bool
+        Whether the slices lie across the long axis of the body.
+    original : bool
+        Whether the scanner made them, not a program afterwards.
+    """
+
+    headers: list[SliceHeader]
+    step: float
+    extent: float
+    axial: bool
+    original: bool
+
+    @property
+    def label(self) -> str:
+        """How it is called in messages: numbers only."""
+        first = self.headers[0]
+        kernel = f", kernel {first.kernel}" if first.kernel else ""
+        number = "" if first.series_number is None else f"series {first.series_number}: "
+        return f"{number}{len(self.headers)} slices of {first.rows} x {first.cols}, {self.step:.2f} mm apart{kernel}"
+
+
+def choose_series(headers: list[SliceHeader], allow: Collection[str] = ()) -> tuple[list[SliceHeader], list[Finding]]:
+    """Choose the slices of the scan to read.
+
+    Parameters
+    ----------
+    headers : list of SliceHeader
+        All images of the folder.
+    allow : collection of str
+        ``"wrong_modality"`` takes images that are not CT.
+
+    Returns
+    -------
+    headers : list of SliceHeader
+        Of one series, in file order, with geometry.
+    findings : list of Finding
+        What was chosen and what was left.
+
+    Raises
+    ------
+    InputRefused
+        ``NoImages``, ``WrongModality``, ``BadGeometry``, ``AmbiguousSeries``, ``MixedPatients``,
+        ``MixedFrameOfReference``.
+
+    Examples
+    --------
+    Two reconstructions of one study, of which the thinner is chosen:
+
+    >>> from dataclasses import replace
+    >>> from data_synth import write_dicom
+    >>> from .parse import parse_file
+    >>> from .slice_header import read_headers
+    >>> hu, affine = np.zeros((20, 4, 4), np.int16), np.eye(4)[[2, 1, 0, 3]]
+    >>> files = write_dicom("thin", hu, affine) + write_dicom("thick", hu[::2], affine * [2, 1, 1, 1])
+    >>> headers = [header for i, file in enumerate(files) for header in read_headers(*parse_file(file, i), i)]
+    >>> chosen, findings = choose_series([replace(header, study="1") for header in headers])
+    >>> len(chosen), [finding.code for finding in findings]
+    (20, ['SeriesChosen', 'SeriesSkipped'])
+    """
+    # CT images, in groups that belong together
+    usable, left = _usable(headers, "wrong_modality" in allow)
+    if not usable:
+        raise _nothing_usable(headers, left)
+    groups = _groups(usable)
+    placed = [group for group in groups if group[0].orientation is not None and group[0].spacing is not None]
+    if not placed:
+        check_geometry(usable)
+
+    # the best group that is large enough to be a scan
+    scans = [group for group in placed if len(group) > _STRAY] or placed
+    candidates = [_candidate(group) for group in scans]
+    chosen = _best(candidates)
+
+    # of one patient, and whole
+    _check_one_person(chosen.headers, "series")
+    _check_rest_of_series(chosen, [g for g in groups if g is not chosen.headers])
+    rest = [candidate for candidate in candidates if candidate is not chosen]
+    strays = [group for group in placed if not any(group is scan for scan in scans)]
+    return chosen.headers, _report(chosen, rest, strays, left)
+
+
+def _usable(headers: list[SliceHeader], any_modality: bool) -> tuple[list[SliceHeader], Counter[str]]:
+    """Images that may be slices of a CT, and the others counted by reason."""
+    usable, left = [], Counter[str]()
+    for header in headers:
+        reason = _why_not(header, any_modality)
+        if reason:
+            left[reason] += 1
+        else:
+            usable.append(header)
+    return usable, left
+
+
+def _why_not(header: SliceHeader, any_modality: bool) -> str:
+    """Why an image is no slice of a CT; empty where it may be one."""
+    if header.samples != 1 or header.photometric not in ("MONOCHROME1", "MONOCHROME2", ""):
+        return "colour picture"
+    if "LOCALIZER" in header.image_type:
+        return "scout view"
+    if header.modality not in _CT and not any_modality:
+        return "other modality"
+    if header.sop_class not in CT_CLASSES and not any_modality:
+        return "not a CT image"
+    if header.frames > 1 and header.position is None:
+        return "film without positions"
+    return ""
+
+
+def _nothing_usable(headers: list[SliceHeader], left: Counter[str]) -> InputRefused:
+    """The refusal for a folder without CT slices, with what is there instead."""
+    others = sorted({h.modality for h in headers if h.modality not in _CT} & _MODALITIES)
+    if left["other modality"]:
+        found = ", ".join(others) or "another modality"
+        return InputRefused("WrongModality", f"The images are {found}, not CT.", "Give the folder of a head CT.")
+    listed = ", ".join(f"{count} x {reason}" for reason, count in sorted(left.items()))
+    what = f"The folder holds no CT slices ({listed})." if listed else "The folder holds no DICOM images."
+    return InputRefused("NoImages", what, "Give the folder of a head CT in DICOM format.")
+
+
+_MODALITIES = {"MR", "PT", "NM", "CR", "DX", "US", "XA", "RF", "MG", "OT", "SC", "SEG", "RTSTRUCT", "RTDOSE"}
+
+
+def _groups(headers: list[SliceHeader]) -> list[list[SliceHeader]]:
+    """Images that belong together, in file order."""
+    groups: list[list[SliceHeader]] = []
+    for header in headers:
+        for group in groups:
+            if _belong_together(group[0], header):
+                group.append(header)
+                break
+        else:
+            groups.append([header])
+    return groups
+
+
+def _belong_together(a: SliceHeader, b: SliceHeader) -> bool:
+    """Whether two images agree in series, size, kind, orientation and spacing."""
+    # the first three values say original/derived, primary/secondary and axial/localizer; later ones may vary in a scan
+    same = (a.series, a.rows, a.cols, a.modality, a.image_type[:3]) == (
+        b.series,
+        b.rows,
+        b.cols,
+        b.modality,
+        b.image_type[:3],
+    )
+    return same and _close(a.orientation, b.orientation) and _close(a.spacing, b.spacing)
+
+
+def _close(a: np.ndarray | None, b: np.ndarray | None) -> bool:
+    """Whether two vectors agree within rounding; absent ones agree with each other only."""
+    if a is None or b is None:
+        return a is b
+    return bool(np.allclose(a, b, rtol=_DIRECTION_TOL, atol=_DIRECTION_TOL, equal_nan=True))
+
+
+def _candidate(group: list[SliceHeader]) -> Candidate:
+    """What the choice depends on; a group without sound geometry is judged by its number of slices alone."""
+    first = group[0]
+    original = bool(first.image_type) and first.image_type[0] == "ORIGINAL"
+    try:
+        check_geometry(group)
+        *_, normal = axes_of(np.asarray(first.orientation))
+        heights = sort_by_height(group)[1]
+    except InputRefused:
+        return Candidate(group, 1.0, float(len(group)), True, original)
+    # copies at one height do not count
+    gaps = np.diff(heights)
+    step = float(np.median(gaps[gaps > 1e-3])) if (gaps > 1e-3).any() else 0.0
+    return Candidate(group, step, float(heights[-1]) + step, bool(abs(normal[2]) > 0.8), original)
+
+
+def _best(candidates: list[Candidate]) -> Candidate:
+    """The thinnest axial original scan among those that cover a head; a tie is refused."""
+    # tall enough for a head, then axial, original, thin, and with most slices
+    enough = [c for c in candidates if len(c.headers) >= MIN_SLICES] or candidates
+    tall = min(max(c.extent for c in enough), _HEAD_HEIGHT_MM)
+    pool = [c for c in enough if c.extent >= 0.7 * tall]
+    pool.sort(key=lambda c: (not c.axial, not c.original, round(c.step, 2), -len(c.headers)))
+    best = pool[0]
+
+    # others of the same direction must be of the same person and study
+    rivals = [c for c in pool[1:] if c.axial == best.axial and c.step <= MAX_STEP_MM + 0.1]
+    if rivals:
+        _check_one_person([c.headers[0] for c in (best, *rivals)], "folder")
+    if any(c.headers[0].study != best.headers[0].study for c in rivals):
+        raise ambiguous([best, *rivals], "studies")
+
+    # among equals the smooth kernel is meant: sharp ones raise the noise
+    ties = [best, *(c for c in rivals if c.original == best.original and abs(c.step - best.step) < 0.05 * best.step)]
+    if len(ties) == 1:
+        return best
+    smooth = [c for c in ties if not _is_sharp(c.headers[0].kernel)]
+    if len(smooth) != 1 or not all(c.headers[0].kernel for c in ties):
+        raise ambiguous(ties, "series")
+    return smooth[0]
+
+
+def _is_sharp(kernel: str) -> bool:
+    """Whether a kernel's name is one of the makers' for edges: bone, lung, or a high number."""
+    # by its own name
+    if any(word in kernel for word in ("BONE", "SHARP", "EDGE", "LUNG", "DETAIL", "ULTRA")):
+        return True
+    # by the makers' codes: letters, and a number that rises with sharpness
+    letters, digits = kernel[:2].rstrip("0123456789"), "".join(c for c in kernel.split("/")[0] if c.isdigit())
+    return bool(digits) and (
+        (letters in {"H", "B", "J", "U", "HR", "BR", "HC", "BL"} and int(digits[:2]) >= 55)
+        or (letters == "FC" and int(digits[:2]) in (*range(30, 36), *range(50, 60), *range(80, 90)))
+        or kernel.startswith(("YB", "YC", "YD"))
+    )
+
+
+def ambiguous(candidates: list[Candidate], what: str) -> InputRefused:
+    """The refusal where more than one scan could be meant.
+
+    Parameters
+    ----------
+    candidates : list of Candidate
+    what : str
+        "series" or "studies".
+
+    Returns
+    -------
+    InputRefused
+    """
+    listed = "; ".join(c.label for c in candidates[:4])
+    return InputRefused("AmbiguousSeries", f"The folder holds several head CT {what} ({listed}).", _FOLDER_REMEDY)
+
+
+def _check_one_person(headers: list[SliceHeader], where: str) -> None:
+    """Refuse images of more than one patient, and a series with more than one frame of reference."""
+    for part in range(3):
+        if len({h.person[part] for h in headers} - {""}) > 1:
+            message = f"The {where} holds images of more than one patient."
+            raise InputRefused("MixedPatients", message, "Sort the images by patient first.")
+    if where == "series" and len({h.frame_of_reference for h in headers} - {""}) > 1:
+        message = "The series holds images of more than one frame of reference: their positions cannot be compared."
+        raise InputRefused("MixedFrameOfReference", message, _FOLDER_REMEDY)
+
+
+def _check_rest_of_series(chosen: Candidate, others: list[list[SliceHeader]]) -> None:
+    """Images of the same series that were grouped apart must not be a part of the same head."""
+    first = chosen.headers[0]
+    for group in others:
+        if group[0].series != first.series or group[0].image_type[:1] != first.image_type[:1]:
+            continue
+        # a part without geometry cannot be told from the rest
+        if group[0].orientation is None or group[0].spacing is None:
+            check_geometry(group)
+        if not _close(group[0].orientation, first.orientation):
+            continue
+        check_geometry(group)
+        if len(group) > _STRAY:
+            raise bad_geometry(f"{len(group)} slices of the series differ from the others in size or pixel spacing.")
+
+
+def _report(
+    chosen: Candidate, rest: list[Candidate], strays: list[list[SliceHeader]], left: Counter[str]
+) -> list[Finding]:
+    """What was chosen, and what was left and why."""
+    first = chosen.headers[0]
+    values = {"slices": len(chosen.headers), "step_mm": round(chosen.step, 4), "series": first.series_number}
+    findings = [Finding("SeriesChosen", "info", f"Read {chosen.label}.", values)]
+    findings += [Finding("SeriesSkipped", "info", f"Left {c.label}.", {"slices": len(c.headers)}) for c in rest]
+    for group in strays:
+        same = group[0].series == first.series
+        count = len(group)
+        message = f"Left {count} image{'s' * (count > 1)} that fit no stack."
+        findings.append(Finding("ImagesSkipped", "warning" if same else "info", message, {"images": count}))
+    if first.modality not in _CT or first.sop_class not in CT_CLASSES:
+        findings.append(Finding("WrongModality", "warning", "The images are not CT; they were read as allowed.", {}))
+    if left:
+        listed = ", ".join(f"{reason}: {count}" for reason, count in sorted(left.items()))
+        findings.append(Finding("ImagesSkipped", "info", f"Left images that are no CT slices ({listed}).", dict(left)))
+    return findings

@@ -1,0 +1,162 @@
+"""One image of a NIfTI or NRRD file before anything is made of it, and what reading both kinds of file shares.
+
+Only the declared number of bytes is ever read or inflated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import BinaryIO
+
+from numpy.typing import NDArray
+
+from ..errors import InputRefused
+from ..grid import Affine
+from .load_report import Finding
+
+MAX_VOXELS = 2**30
+_MAX_REST_BYTES = 2**26  # bytes
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """What a file says, before anything is made of it.
+
+    Parameters
+    ----------
+    source : {"NIfTI", "NRRD"}
+        Kind of the file.
+    raw : ndarray, shape (I, J, K)
+        The file's own numbers on its own axes.
+    affine : ndarray, shape (4, 4)
+        Index (i, j, k, 1) -> world mm (LPS).
+    slope, intercept : float
+        A value is raw * slope + intercept.
+    findings : tuple of Finding
+        What was noticed.
+    """
+
+    source: str
+    raw: NDArray
+    affine: Affine
+    slope: float = 1.0
+    intercept: float = 0.0
+    findings: tuple[Finding, ...] = ()
+
+
+def read_exactly(stream: BinaryIO, count: int) -> bytearray:
+    """Read a number of bytes of a stream, inflated or not.
+
+    Parameters
+    ----------
+    stream : binary stream
+    count : int
+        Bytes that the header declares.
+
+    Returns
+    -------
+    bytearray
+        `count` of them.
+
+    Raises
+    ------
+    InputRefused
+        ``CorruptFile`` where it ends before.
+
+    Examples
+    --------
+    >>> import io
+    >>> read_exactly(io.BytesIO(b"voxels and more"), 6)
+    bytearray(b'voxels')
+    """
+    content = bytearray(count)
+    view, filled = memoryview(content), 0
+    while filled < count:
+        part = stream.read(min(count - filled, 2**24))
+        if not part:
+            message = f"The file is cut short: it holds {filled} of {count} bytes of voxels."
+            raise InputRefused("CorruptFile", message, "Copy the file again from its source.")
+        view[filled : filled + len(part)] = part
+        filled += len(part)
+    return content
+
+
+def check_rest(stream: BinaryIO) -> list[Finding]:
+    """Read on to the end, where packed data hold their checksum.
+
+    Parameters
+    ----------
+    stream : binary stream
+        Behind the voxels. No more than 2^26 bytes of it are inflated.
+
+    Returns
+    -------
+    list of Finding
+        A warning where bytes are left; else empty.
+
+    Examples
+    --------
+    >>> import io
+    >>> check_rest(io.BytesIO(b""))
+    []
+    >>> check_rest(io.BytesIO(b"more"))[0].values
+    {'at_least': 4}
+    """
+    rest = 0
+    while rest <= _MAX_REST_BYTES:
+        part = stream.read(2**22)
+        if not part:
+            break
+        rest += len(part)
+    if not rest:
+        return []
+    message = "The file holds more bytes than its header declares voxels; they were left."
+    return [Finding("BytesLeft", "warning", message, {"at_least": rest})]
+
+
+def check_shape(sizes: list[int]) -> tuple[int, int, int]:
+    """Check that an image has three axes; further ones of one sample are left out.
+
+    Parameters
+    ----------
+    sizes : list of int
+        Samples along each axis.
+
+    Returns
+    -------
+    tuple of int
+        The three sizes.
+
+    Raises
+    ------
+    InputRefused
+        ``BadShape`` unless three axes remain; ``LimitExceeded`` beyond `MAX_VOXELS`.
+
+    Examples
+    --------
+    >>> check_shape([512, 512, 68, 1])
+    (512, 512, 68)
+    """
+    if len(sizes) < 3 or any(size != 1 for size in sizes[3:]) or min(sizes) < 1:
+        message = f"The image has the sizes {' x '.join(str(s) for s in sizes)}; three axes are wanted."
+        raise InputRefused("BadShape", message, "Give one 3-D volume.")
+    shape = (int(sizes[0]), int(sizes[1]), int(sizes[2]))
+    if shape[0] * shape[1] * shape[2] > MAX_VOXELS:
+        message = f"The image declares {' x '.join(str(s) for s in shape)} voxels; at most {MAX_VOXELS} are read."
+        raise InputRefused("LimitExceeded", message, "Crop it to the head.")
+    return shape
+
+
+def no_orientation(what: str) -> InputRefused:
+    """The refusal for a file that does not say where left is.
+
+    Parameters
+    ----------
+    what : str
+        One sentence: what the file lacks.
+
+    Returns
+    -------
+    InputRefused
+    """
+    return InputRefused("NoOrientation", what, "Convert it again with its orientation, or allow no_orientation.")

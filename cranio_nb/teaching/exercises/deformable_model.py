@@ -1,0 +1,171 @@
+"""Exercises of lesson 04: the balloon's height, its pressure, its curve."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from ...curves import cubic, spiral
+from ...stages.deformable_model import inflate
+from .task import Exercise, largest_difference, small_head
+
+_PX = 0.45  # mm: the paper's pixel
+
+
+def _pressures():
+    return [(0.062, 21), (0.062, 41), (0.02, 31)]
+
+
+@cache
+def _gaps():
+    """Closed-form gaps of the phantom: (length in px of 0.45 mm, theta0, theta1)."""
+    found = []
+    for plane in (12, 16, 20):
+        gap = max((t.outer for t in small_head().slice_truth(plane) if t.outer), key=lambda g: g.chord)
+        found.append((gap.chord * small_head().affine[1, 1] / _PX, *np.radians(gap.angles)))
+    return tuple(found)
+
+
+def _tangents():
+    """Each gap with both tangents turned one way, as noise does: the start curve is poor, k is right all the same.
+
+    The last has few snaxels, where an end slope per n instead of per n - 1 can be seen.
+    """
+    turned = zip(_gaps(), np.radians([4.0, 8.0, -8.0]), (21, 21, 9), strict=True)
+    return [(length, theta0 + turn, theta1 + turn, n) for (length, theta0, theta1), turn, n in turned]
+
+
+def _mm_off(curve, wanted):
+    """Largest distance in mm between two curves of n snaxels each, snaxel by snaxel."""
+    nodes = np.asarray(curve, float)
+    if nodes.shape != wanted.shape:
+        return float("inf")
+    return _PX * float(np.linalg.norm(nodes - wanted, axis=1).max())
+
+
+def _tangent_pressure(length, theta0, theta1, n):
+    return length * (np.tan(theta0) - np.tan(theta1)) / (n - 1) ** 2
+
+
+def _relaxed(length, theta0, theta1, n, k, steps=None):
+    """The balloon at rest under k; its end slopes are per one of `steps`, N if not given."""
+    slopes = np.array([[length, length * np.tan(t)] for t in (theta0, theta1)]) / (steps or n - 1)
+    return inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve
+
+
+def _at_rest(length, theta0, theta1, n, steps=None):
+    return _relaxed(length, theta0, theta1, n, _tangent_pressure(length, theta0, theta1, n), steps)
+
+
+def _mirrored(length, theta0, theta1, n):
+    return _relaxed(length, -theta0, -theta1, n, -_tangent_pressure(length, theta0, theta1, n))
+
+
+EXERCISES: dict[str, Exercise] = {
+    "4.1": Exercise(
+        cases=_pressures,
+        right=lambda k, n: k * (n - 1) ** 2 / 8,
+        error=largest_difference,
+        unit="px",
+        tolerance=1e-6,
+        form="one number",
+        mistakes=(
+            (lambda k, n: k * n**2 / 8, "N counts the steps between snaxels: N = n - 1."),
+            (lambda k, n: k * (n - 1) ** 2 / 2, "Four times too high: where along the curve does the apex lie?"),
+            (lambda k, n: k * (n - 1) ** 2, "Too high: the parabola has a factor of its own, and its apex a place."),
+            (lambda k, n: -k * (n - 1) ** 2 / 8, "With k > 0 outward the apex lies outside: it is positive."),
+        ),
+        hints=("At rest c'' = -k, with the end heights 0.", "c(i) = k i (N - i) / 2.", "Put i = N / 2, and N = n - 1."),
+        praise="the apex does not know the width of the gap.",
+    ),
+    "4.2": Exercise(
+        cases=_tangents,
+        right=_tangent_pressure,
+        error=largest_difference,
+        unit="px per index squared",
+        tolerance=1e-6,
+        form="one number",
+        mistakes=(
+            (lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / n**2, "N counts the steps between snaxels: N = n - 1."),
+            (
+                lambda L, a, b, n: L * (np.tan(a) + np.tan(b)) / (n - 1) ** 2,
+                "tan theta1 is negative: adding it takes away what it should give.",
+            ),
+            (
+                lambda L, a, b, n: L * (np.tan(np.radians(a)) - np.tan(np.radians(b))) / (n - 1) ** 2,
+                "The angles are in radians already.",
+            ),
+            (
+                lambda L, a, b, n: (np.tan(a) - np.tan(b)) / (n - 1) ** 2,
+                "The length is missing: a wide gap needs a larger k.",
+            ),
+            (
+                lambda L, a, b, n: -_tangent_pressure(L, a, b, n),
+                "The sign is turned: from one end to the other the slope falls, and k is positive.",
+            ),
+            (lambda L, a, b, n: L * (a - b) / (n - 1) ** 2, "These are angles; the slope is the tangent of an angle."),
+            (
+                lambda L, a, b, n: L * (a + np.pi - b) / (n - 1) ** 2,
+                "These are angles above the chord; the slope is the tangent of an angle, and not quite the same.",
+            ),
+        ),
+        hints=(
+            "The slope changes from tan theta0 to tan theta1 over N steps.",
+            "One step along is L / N, and c'' = -k per step squared.",
+            "So N k is the change of the slope, in px per step: times L / N. Solve for k.",
+        ),
+        praise="the ends themselves say how hard to blow.",
+    ),
+    "4.3": Exercise(
+        cases=_tangents,
+        right=_at_rest,
+        error=_mm_off,
+        unit="mm",
+        tolerance=0.1,
+        form="an array (n, 2) of (along, out) from one end of the gap to the other",
+        mistakes=(
+            (
+                lambda L, a, b, n: _relaxed(L, a, b, n, 0.062),
+                "This is the paper's k: too weak for these gaps. Let the ends choose it.",
+            ),
+            (
+                lambda L, a, b, n: _relaxed(L, a, b, n, -_tangent_pressure(L, a, b, n)),
+                "The balloon goes into the head: k must be positive here.",
+            ),
+            (_mirrored, "The whole curve lies on the wrong side of the chord."),
+            (lambda L, a, b, n: _relaxed(L, a, b, n, 0.0), "Without pressure tension pulls the curve flat."),
+            (
+                lambda L, a, b, n: np.column_stack([np.linspace(0, L, n), np.zeros(n)]),
+                "This is the chord; the skull bulges.",
+            ),
+            (
+                lambda L, a, b, n: cubic(L, a, b, n),
+                "This is the start curve, not yet inflated: it keeps all the noise of the tangents.",
+            ),
+            (
+                lambda L, a, b, n: spiral(L, a, b, n)[0],
+                "This is the spiral, not a balloon: it keeps the noise of the tangents. Inflate.",
+            ),
+            (
+                lambda L, a, b, n: _relaxed(L, a, b, n, L * (np.tan(a) - np.tan(b)) / n**2),
+                "The balloon is too flat: in its k N counts the steps between snaxels, N = n - 1.",
+            ),
+            (
+                lambda L, a, b, n: _at_rest(L, a, b, n, n),
+                "The end slopes are too small: n snaxels have n - 1 steps between them.",
+            ),
+            (
+                lambda L, a, b, n: _at_rest(L, a, b, n, 1),
+                "The end slopes are for the whole gap; inflate wants them per snaxel: divide by n - 1.",
+            ),
+        ),
+        hints=(
+            "Start with cubic(...), as in the lesson.",
+            "deformable_model.inflate(start, end_slopes, pressure=k) wants the slopes per snaxel.",
+            "k = deformable_model.tangent_pressure(length, theta0, theta1, n)",
+        ),
+        praise="a balloon at rest, though the tangents were noisy and the start curve was poor.",
+    ),
+}
+"""The exercises of lesson 04, by number."""

@@ -1,0 +1,112 @@
+"""Exercises of lesson 07: HD95, mirror images."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from .task import Exercise, largest_difference
+
+
+def _clouds():
+    grid = np.stack(np.meshgrid(np.arange(20.0), np.arange(20.0), [0.0]), axis=-1).reshape(-1, 3)
+    bump = grid.copy()
+    bump[::25, 2] += 6.0
+    left, right = grid[grid[:, 0] < 12], grid[grid[:, 0] >= 4]
+    return [(left, right + np.array([0.0, 0.0, 1.5])), (bump, grid), (grid, left)]
+
+
+def _both_ways(a, b):
+    return np.concatenate([cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]])
+
+
+def _planes():
+    points = np.array([[50.0, 0.0, 10.0], [-20.0, 33.0, 4.0], [2.0, -70.0, 30.0]])
+    lean = np.array([0.96, 0.28, 0.0])
+    return [
+        (points, np.array([1.0, 0.0, 0.0]), np.zeros(3)),
+        (points, np.array([1.0, 0.0, 0.0]), np.array([2.3, 0.0, 0.0])),
+        (points, lean, np.array([2.3, -6.1, 40.0])),
+    ]
+
+
+def _mirrored(points, normal, origin):
+    return points - 2 * ((points - origin) @ normal)[:, None] * normal
+
+
+EXERCISES: dict[str, Exercise] = {
+    "7.1": Exercise(
+        cases=_clouds,
+        right=lambda a, b: np.percentile(_both_ways(a, b), 95),
+        error=largest_difference,
+        unit="mm",
+        tolerance=1e-6,
+        form="one number",
+        mistakes=(
+            (
+                lambda a, b: np.percentile(cKDTree(b).query(a)[0], 95),
+                "One way only: what is missing in a is not seen. Look from b as well.",
+            ),
+            (
+                lambda a, b: np.percentile(cKDTree(a).query(b)[0], 95),
+                "One way only: what a has too much is not seen. Look from a as well.",
+            ),
+            (
+                lambda a, b: max(np.percentile(cKDTree(b).query(a)[0], 95), np.percentile(cKDTree(a).query(b)[0], 95)),
+                "This is the larger of two percentiles (some papers do so); join the distances, then take one.",
+            ),
+            (
+                lambda a, b: np.percentile(_both_ways(a, b), 0.95),
+                "np.percentile counts to 100: 95, not 0.95.",
+            ),
+            (lambda a, b: _both_ways(a, b).max(), "This is the largest distance; HD95 leaves the worst 5 percent out."),
+            (lambda a, b: _both_ways(a, b).mean(), "This is the mean distance (ASSD), not the 95th percentile."),
+            (
+                lambda a, b: np.percentile(np.linalg.norm(a[:, None] - b[None], axis=-1), 95),
+                "This takes every pair of points; wanted is the distance to the nearest one.",
+            ),
+        ),
+        hints=(
+            "spatial.cKDTree(b).query(a)[0] are the distances from a to b.",
+            "Take both ways and join them.",
+            "np.percentile(np.concatenate([...]), 95)",
+        ),
+        praise="missing parts count as much as extra ones.",
+    ),
+    "7.2": Exercise(
+        cases=_planes,
+        right=_mirrored,
+        error=largest_difference,
+        unit="mm",
+        tolerance=1e-6,
+        form="an array like the points",
+        mistakes=(
+            (lambda p, n, o: p - ((p - o) @ n)[:, None] * n, "The points stop on the plane: go twice as far."),
+            (
+                lambda p, n, o: p - 2 * (p @ n)[:, None] * n,
+                "The plane does not pass through 0, 0, 0: measure from the origin given.",
+            ),
+            (
+                lambda p, n, o: p - 2 * ((p - o) @ n) * n,
+                "Each point needs its own distance: a column, distance[:, None], times the normal.",
+            ),
+            (
+                lambda p, n, o: p + 2 * ((p - o) @ n)[:, None] * n,
+                "The sign is wrong: this goes away from the plane, not through it.",
+            ),
+            (
+                lambda p, n, o: _mirrored(p, n, o) - o,
+                "Measured from the origin and left there: take the steps off the points, not off points - origin.",
+            ),
+            (lambda p, n, o: p * [-1, 1, 1], "This mirrors at x = 0; the head stands aside and leans."),
+            (lambda p, n, o: 2 * o - p, "This is a point reflection: only the part along the normal may change sign."),
+        ),
+        hints=(
+            "How far is a point from the plane? (points - origin) @ normal.",
+            "Go back twice that far along the normal.",
+            "points - 2 * distance[:, None] * normal",
+        ),
+        praise="the sound side has crossed the plane.",
+    ),
+}
+"""The exercises of lesson 07, by number."""

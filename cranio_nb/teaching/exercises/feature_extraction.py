@@ -1,0 +1,157 @@
+"""Exercises of lesson 03: boundary, tangent, arc length."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+
+from .task import Exercise, degrees_apart, different_pixels, largest_difference, small_head
+
+
+def _bones():
+    bone = small_head().bone
+    touching = np.zeros((12, 12), bool)
+    touching[3:9, :] = touching[:9, 3:9] = True  # left and right: a mask that is rolled meets itself; and the top
+    return [(bone[19],), (bone[12],), (touching,)]
+
+
+def _inner_edge(bone):
+    return bone & ~ndimage.binary_erosion(bone)
+
+
+def _rolled_edge(bone):
+    sides = [np.roll(bone, step, axis) for axis in (0, 1) for step in (1, -1)]
+    return bone & ~np.logical_and.reduce(sides)
+
+
+def _clouds():
+    t = np.linspace(-10.0, 10.0, 41)
+    wave = 0.3 * np.cos(9 * t)
+    wave[[0, -1]] += [2.0, -2.0]  # the line from the first point to the last is not the nearest to all
+    clouds = []
+    for angle in (0.0, 90.0, 145.0):
+        c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
+        clouds.append((np.column_stack([c * t - s * wave, s * t + c * wave]) + np.array([60.0, 80.0]),))
+    return clouds
+
+
+def _line(points):
+    return np.linalg.svd(points - points.mean(axis=0))[2][0]
+
+
+def _by_slope(points):
+    slope = np.polyfit(points[:, 0], points[:, 1], 1)[0]
+    return np.array([1.0, slope])
+
+
+def _by_slope_of_rows(points):
+    slope = np.polyfit(points[:, 1], points[:, 0], 1)[0]
+    return np.array([slope, 1.0])
+
+
+def _spines():
+    angle = np.linspace(0, 1.5 * np.pi, 60)
+    arc = 50 * np.column_stack([np.cos(angle), np.sin(angle)])
+    stairs = np.cumsum([[0, 0], [0, 1], [1, 1], [1, 0], [1, 1], [0, 1]], axis=0).astype(float)
+    return [(stairs,), (arc,), (arc[::-3] + np.array([9.0, 7.0]),)]
+
+
+def _arc_length(points):
+    return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+
+
+EXERCISES: dict[str, Exercise] = {
+    "3.1": Exercise(
+        cases=_bones,
+        right=_inner_edge,
+        error=different_pixels,
+        unit="pixels",
+        tolerance=0.0,
+        form="a mask like the one given",
+        mistakes=(
+            (lambda b: ndimage.binary_dilation(b) & ~b, "These pixels lie outside the bone; B is part of the bone."),
+            (
+                lambda b: ndimage.binary_dilation(b) ^ ndimage.binary_erosion(b),
+                "This band is two pixels wide; keep the bone's own.",
+            ),
+            (lambda b: ndimage.binary_erosion(b), "This is the inside; the boundary is what erosion takes away."),
+            (
+                lambda b: b & ~ndimage.binary_erosion(b, border_value=1),
+                "At the edge of the image there is boundary too: erosion there needs border_value=0.",
+            ),
+            (_rolled_edge, "np.roll brings in the opposite border: what lies outside the image is not bone."),
+            (
+                lambda b: b & ~ndimage.binary_erosion(b, np.ones((3, 3))),
+                "Use the cross of 4 neighbours; the square takes corners twice.",
+            ),
+        ),
+        hints=(
+            "Which pixels does an erosion take away?",
+            "ndimage.binary_erosion(bone) is the inside.",
+            "Keep the bone that is not in its inside: `&` and `~`.",
+        ),
+        praise="one pixel wide, all of it bone.",
+    ),
+    "3.2": Exercise(
+        cases=_clouds,
+        right=_line,
+        error=degrees_apart,
+        unit="degrees",
+        tolerance=0.5,
+        form="one direction: two numbers (row, col)",
+        mistakes=(
+            (_by_slope, "A slope of col over row fails for points along a row: no such line stands upright."),
+            (
+                _by_slope_of_rows,
+                "A slope of row over col fails for points along a column: no such line stands upright.",
+            ),
+            (
+                lambda p: np.linalg.svd(p)[2][0],
+                "The points are not centred: this looks at the origin. Subtract the mean.",
+            ),
+            (lambda p: np.linalg.svd(p - p.mean(axis=0))[2][1], "This is the normal, the direction of least spread."),
+            (lambda p: _line(p)[::-1], "Row and column are swapped."),
+            (
+                lambda p: p[1] - p[0],
+                "Two pixels are too few: the stairs of the boundary turn the line. Fit all points.",
+            ),
+            (
+                lambda p: p[-1] - p[0],
+                "From the first point to the last: the noise of these two turns the line. Fit all points.",
+            ),
+        ),
+        hints=(
+            "Centre the points first.",
+            "The SVD gives the direction of largest spread.",
+            "np.linalg.svd gives three arrays; the rows of the third are directions, the one of largest spread first.",
+        ),
+        praise="a tangent in any direction, upright too.",
+    ),
+    "3.3": Exercise(
+        cases=_spines,
+        right=_arc_length,
+        error=largest_difference,
+        unit="px",
+        tolerance=1e-6,
+        form="one number for each point, starting with 0",
+        mistakes=(
+            (lambda p: np.arange(len(p)).astype(float), "This counts points; a diagonal step is 1.41 px long."),
+            (
+                lambda p: np.linalg.norm(p - p[0], axis=1),
+                "This is the straight distance to the first point, not the way along the curve.",
+            ),
+            (lambda p: _arc_length(p)[1:], "The first point is missing: its arc length is 0."),
+            (
+                lambda p: np.concatenate([[0.0], np.cumsum(np.abs(np.diff(p, axis=0)).sum(axis=1))]),
+                "This adds rows and columns; a step is the root of the sum of squares.",
+            ),
+        ),
+        hints=(
+            "np.diff gives the steps.",
+            "Lengths of the steps, then np.cumsum.",
+            "Put a 0 in front: np.concatenate([[0.0], ...])",
+        ),
+        praise="the way along the bone, not through the air.",
+    ),
+}
+"""The exercises of lesson 03, by number."""

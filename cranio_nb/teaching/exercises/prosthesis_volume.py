@@ -1,0 +1,144 @@
+"""Exercises of lesson 05: the outline of a patch, the patch, partial loss."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import ndimage
+from skimage.morphology import convex_hull_image
+
+from .task import Exercise, different_pixels, small_head
+
+_CORNERS = np.ones((3, 3), bool)  # pixels that touch at a corner belong together
+_SIDES = ndimage.generate_binary_structure(2, 1)
+
+
+def _curves():
+    truths = [t for plane in (13, 17, 21) for t in small_head().slice_truth(plane)]
+    return [(t.outer.curve, t.inner.curve) for t in truths if t.outer and t.inner]
+
+
+def _area(outline):
+    row, col = outline.T
+    return abs(row @ np.roll(col, -1) - col @ np.roll(row, -1)) / 2
+
+
+def _outline_error(answer, right):
+    """Difference of the enclosed areas in mm2 (px of 1.75 mm)."""
+    outline = np.asarray(answer, float)
+    if outline.ndim != 2 or outline.shape[1] != 2:
+        return float("inf")
+    return abs(_area(outline) - _area(right)) * 1.75**2
+
+
+def _regions():
+    bone = small_head().bone
+    return [(ndimage.binary_dilation(small_head().implant[p], iterations=2), bone[p]) for p in (13, 17, 21)]
+
+
+def _dented():
+    row, col = np.indices((90, 90)) - 45
+    ring = (np.hypot(row, col) < 38) & (np.hypot(row, col) > 28)
+    dent = ring & ~((row < -31) & (np.abs(col) < 9))
+    speck = dent.copy()
+    speck[82, 43:47] = False
+    pits = (col >= 33) & (col < 35) & (row >= -6) & (row < 0) | (col >= 35) & (col < 37) & (row >= 0) & (row < 6)
+    size = np.bincount(ndimage.label(convex_hull_image(dent) & ~dent)[0].ravel())
+    return [(dent, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]  # just enough; an island; a corner
+
+
+def _lost(bone, min_pixels, touching=_CORNERS):
+    labels, n = ndimage.label(convex_hull_image(bone) & ~bone, touching)
+    sizes = np.bincount(labels.ravel(), minlength=n + 1)
+    sizes[0] = 0
+    keep = sizes >= min_pixels
+    keep[sizes.argmax()] = False
+    return keep[labels]
+
+
+def _with_cavity(bone, min_pixels, touching=_CORNERS):
+    labels, n = ndimage.label(convex_hull_image(bone) & ~bone, touching)
+    keep = np.bincount(labels.ravel(), minlength=n + 1) >= min_pixels
+    keep[0] = False
+    return keep[labels]
+
+
+EXERCISES: dict[str, Exercise] = {
+    "5.1": Exercise(
+        cases=_curves,
+        right=lambda outer, inner: np.concatenate([outer, inner[::-1]]),
+        error=_outline_error,
+        unit="mm2",
+        tolerance=0.01,
+        form="an array (n, 2) of (row, col)",
+        mistakes=(
+            (
+                lambda o, i: np.concatenate([o, i]),
+                "The outline crosses itself like a bow tie: walk back along the inner curve.",
+            ),
+            (lambda o, i: o, "This closes the outer curve by its chord; the inner curve is missing."),
+            (lambda o, i: i, "This closes the inner curve by its chord; the outer curve is missing."),
+        ),
+        hints=(
+            "Walk along the outer curve, then back along the inner one.",
+            "inner[::-1] is the inner curve from its end.",
+            "np.concatenate([outer, inner[::-1]])",
+        ),
+        praise="an outline that goes round once.",
+    ),
+    "5.2": Exercise(
+        cases=_regions,
+        right=lambda region, bone: region & ~bone,
+        error=different_pixels,
+        unit="pixels",
+        tolerance=0.0,
+        form="a mask like the ones given",
+        mistakes=(
+            (lambda r, b: r, "Bone is still in it: a prosthesis cannot be where the bone is."),
+            (
+                lambda r, b: r ^ b,
+                "This also holds the whole rest of the skull: it is either, not the one without the other.",
+            ),
+            (lambda r, b: r & b, "This is just the part that must go."),
+            (lambda r, b: r | b, "This is the repaired slice; the patch is what is new in it."),
+        ),
+        hints=("What is in the region and not in the bone?", "~bone is everything that is not bone.", "region & ~bone"),
+        praise="nothing is designed where bone is.",
+    ),
+    "5.3": Exercise(
+        cases=_dented,
+        right=_lost,
+        error=different_pixels,
+        unit="pixels",
+        tolerance=0.0,
+        form="a mask like the one given",
+        mistakes=(
+            (_with_cavity, "The brain's place is in it: drop the biggest region too."),
+            (lambda b, m: _with_cavity(b, m, _SIDES), "The brain's place is in it: drop the biggest region too."),
+            (lambda b, m: _lost(b, 1), "Small islands are left: drop regions under min_pixels."),
+            (
+                lambda b, m: _lost(b, m, _SIDES),
+                "Pixels that touch at a corner belong together: measure.label counts them so.",
+            ),
+            (lambda b, m: _lost(b, m + 1), "A region of just min_pixels stays: >=, not >."),
+            (
+                lambda b, m: _lost(b, m + 1, _SIDES),
+                "A region of just min_pixels stays (>=), and pixels that touch at a corner belong together.",
+            ),
+            (
+                lambda b, m: convex_hull_image(b) & ~b,
+                "This is the whole difference: the biggest region and the islands must go.",
+            ),
+            (
+                lambda b, m: ndimage.binary_fill_holes(b) & ~b,
+                "Filling holes finds the cavity, not the dent: use the convex hull.",
+            ),
+        ),
+        hints=(
+            "morphology.convex_hull_image(bone) & ~bone, then measure.label.",
+            "Count each label; 0 is background.",
+            "keep = sizes >= min_pixels; keep[sizes.argmax()] = False; keep[labels]",
+        ),
+        praise="only the dent is left (the paper's Fig. 6d).",
+    ),
+}
+"""The exercises of lesson 05, by number."""

@@ -1,0 +1,160 @@
+"""Exercises of lesson 02: the largest part, small holes."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+from scipy import ndimage
+
+from .task import Exercise, different_pixels, small_head
+
+
+def _largest(mask):
+    labels, _ = ndimage.label(mask)
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return labels == sizes.argmax()
+
+
+def _largest_over_corners(mask):
+    labels, _ = ndimage.label(mask, np.ones((3, 3, 3)))
+    return labels == np.bincount(labels.ravel())[1:].argmax() + 1
+
+
+def _largest_shifted(mask):
+    labels, _ = ndimage.label(mask)
+    return labels == np.bincount(labels.ravel())[1:].argmax()
+
+
+def _largest_of_slices(mask):
+    return np.array([_largest(plane) for plane in mask])
+
+
+def _largest_of_slices_with_bone(mask):
+    return _largest_of_slices(mask) & mask
+
+
+def _parts():
+    bone = small_head().bone
+    couch = bone.copy()
+    couch[2:12, 120:123, 20:40] = True
+    early = bone.copy()
+    early[0:1, 1:5, 1:5] = True
+    blocks = np.zeros((6, 20, 20), bool)
+    blocks[1:5, 2:8, 2:8] = blocks[1:5, 8:12, 8:12] = True  # they share an edge only
+    blocks[5, 15:18, 15:18] = True  # alone in its slice
+    return [(couch,), (early,), (blocks,)]
+
+
+def _bool_pixels(answer, right):
+    """Number of pixels in which two masks differ; what is not bool is no mask."""
+    return different_pixels(answer, right) if np.asarray(answer).dtype == bool else np.inf
+
+
+_FOUR = (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1])  # first, last row; first, last column
+_SOME = ((0, 1), (2, 3), (0, 2), (1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))  # borders that students look at
+
+
+def _holes(mask, max_pixels, *, borders=(0, 1, 2, 3), structure=None, shift=0):
+    """Parts of the background of at most max_pixels that touch none of the borders; `shift` mixes up their sizes."""
+    labels, n = ndimage.label(~mask, structure)
+    sizes = np.bincount(labels.ravel(), minlength=n + 1)
+    small = np.roll(sizes, -shift) <= max_pixels
+    for border in borders:
+        small[labels[_FOUR[border]]] = False
+    small[0] = False
+    return small[labels]
+
+
+def _fill_small(mask, max_pixels, **how):
+    return mask | _holes(mask, max_pixels, **how)
+
+
+def _rings():
+    row, col = np.indices((80, 80)) - 40
+    ring = (np.hypot(row, col) < 30) & (np.hypot(row, col) > 22)
+    spotted, corners, pockets = ring.copy(), ring.copy(), ring.copy()
+    spotted[14, 38:42] = spotted[40, 64:67] = False
+    corners[12:16, 38:43] = False  # 20 pixels
+    corners[34:40, 64:66] = corners[40:46, 66:68] = False  # 12 each, and they share a corner only
+    pockets[14, 38:42] = False
+    for border in (np.s_[:4, 37:43], np.s_[-4:, 37:43], np.s_[37:43, :4], np.s_[37:43, -4:]):
+        pockets[border] = True
+    for border in (np.s_[:2, 39:41], np.s_[-2:, 39:41], np.s_[39:41, :2], np.s_[39:41, -2:]):
+        pockets[border] = False
+    return [(spotted, 8), (corners, 20), (pockets, 20)]
+
+
+_BORDERS = "What touches any of the four borders is outside: first and last row, first and last column."
+
+
+EXERCISES: dict[str, Exercise] = {
+    "2.1": Exercise(
+        cases=_parts,
+        right=_largest,
+        error=_bool_pixels,
+        unit="voxels",
+        tolerance=0.0,
+        form="a bool mask like the one given",
+        mistakes=(
+            (lambda m: ndimage.label(m)[0] == 1, "Label 1 is the part that is met first, not the largest."),
+            (
+                lambda m: ndimage.label(m)[0] == np.bincount(ndimage.label(m)[0].ravel()).argmax(),
+                "The largest label is 0, the background: leave it out of the count.",
+            ),
+            (_largest_shifted, "bincount(...)[1:] begins with part 1: add 1 to its argmax."),
+            *(
+                (way, "This takes the largest part of each slice: label the whole mask once.")
+                for way in (_largest_of_slices, _largest_of_slices_with_bone)
+            ),
+            (_largest_over_corners, "Voxels that share only an edge or a corner are not connected here."),
+            (lambda m: m, "Nothing was dropped."),
+            (lambda m: ndimage.binary_opening(m), "Opening eats thin bone; label the parts and choose one."),
+        ),
+        hints=(
+            "ndimage.label numbers the parts.",
+            "np.bincount(labels.ravel()) counts them; 0 is background.",
+            "Set sizes[0] = 0, then labels == sizes.argmax()",
+        ),
+        praise="the couch is gone, the skull is whole.",
+    ),
+    "2.2": Exercise(
+        cases=_rings,
+        right=_fill_small,
+        error=_bool_pixels,
+        unit="pixels",
+        tolerance=0.0,
+        form="a bool mask like the one given",
+        mistakes=(
+            (lambda m, a: ndimage.binary_fill_holes(m), "This fills the brain's place as well: fill only small holes."),
+            (lambda m, a: m, "No hole was filled."),
+            (
+                partial(_fill_small, borders=()),
+                "What touches the border is outside, not a hole, however small it is.",
+            ),
+            *((partial(_fill_small, borders=some), _BORDERS) for some in _SOME),
+            (
+                partial(_fill_small, structure=np.ones((3, 3))),
+                "Holes that share only a corner are two holes: label the background with 4 neighbours.",
+            ),
+            (lambda m, a: _fill_small(m, a - 1), "A hole of just max_pixels is filled as well: at most means <=."),
+            (
+                partial(_fill_small, shift=1),
+                "bincount(...)[1:] begins with label 1: each size went to the label before.",
+            ),
+            (_holes, "These are the holes alone: return the bone with them, mask | holes."),
+            (
+                lambda m, a: ndimage.binary_closing(m, iterations=3),
+                "Closing also fills bays of the outline; label the holes.",
+            ),
+        ),
+        hints=(
+            "Holes are parts of ~mask: label them.",
+            "A hole has at most max_pixels and does not touch the border.",
+            "Switch off the labels found in the first and last row and column.",
+        ),
+        praise="the diploe is closed and the brain has room.",
+    ),
+}
+"""The exercises of lesson 02, by number."""

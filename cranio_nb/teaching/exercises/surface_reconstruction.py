@@ -1,0 +1,86 @@
+"""Exercises of lesson 06: the volume of a mesh, its size in mm."""
+
+from __future__ import annotations
+
+import numpy as np
+from skimage.measure import marching_cubes
+
+from .task import Exercise, largest_difference
+
+
+def _meshes():
+    steps = np.indices((18, 18, 18)) - 8.5
+    ball = np.linalg.norm(steps, axis=0) < 6
+    meshes = []
+    for spacing, shift in (((1.0, 1.0, 1.0), 0.0), ((3.0, 1.75, 1.75), 40.0), ((2.5, 0.45, 0.45), -200.0)):
+        vertices, faces, _, _ = marching_cubes(ball.astype(np.float32), 0.5, spacing=spacing, method="lorensen")
+        volume = np.einsum("ij,ij->", vertices[faces[:, 0]], np.cross(vertices[faces[:, 1]], vertices[faces[:, 2]]))
+        meshes.append((vertices.astype(float) + shift, faces if volume > 0 else faces[:, ::-1].copy()))
+    (*_, (vertices, faces)) = meshes
+    return [*meshes[:2], (vertices, faces[:, ::-1].copy())]  # the last one inside out: a negative volume
+
+
+def _parts_of_volume(vertices, faces):
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return np.einsum("ij,ij->i", a, np.cross(b, c))
+
+
+def _voxel_places():
+    index = np.array([[0.0, 0.0, 0.0], [10.0, 4.0, 2.0], [3.5, 90.0, 41.5]])
+    return [(index, np.array(s)) for s in ((3.0, 1.75, 1.75), (2.5, 0.45, 0.45), (1.0, 2.0, 4.0))]
+
+
+EXERCISES: dict[str, Exercise] = {
+    "6.1": Exercise(
+        cases=_meshes,
+        right=lambda v, f: _parts_of_volume(v, f).sum() / 6,
+        error=lambda a, b: largest_difference(a, b) / abs(float(b)),
+        unit="of the volume",
+        tolerance=1e-6,
+        form="one number",
+        mistakes=(
+            (lambda v, f: _parts_of_volume(v, f).sum(), "Six times too big: a tetrahedron is a sixth of its box."),
+            (lambda v, f: _parts_of_volume(v, f).sum() / 3, "Twice too much: a tetrahedron is a sixth of its box."),
+            (
+                lambda v, f: abs(_parts_of_volume(v, f).sum()) / 6,
+                "No abs: a mesh turned inside out has a negative volume, and that is how one finds out.",
+            ),
+            (
+                lambda v, f: np.abs(_parts_of_volume(v, f)).sum() / 6,
+                "Keep the signs: faces seen from behind take away.",
+            ),
+            (
+                lambda v, f: -_parts_of_volume(v, f).sum() / 6,
+                "The sign is wrong: a and (b x c), in the order of the face.",
+            ),
+            (lambda v, f: np.prod(np.ptp(v, axis=0)), "This is the box around the mesh."),
+        ),
+        hints=(
+            "Each face and the origin make a tetrahedron.",
+            "Its volume is a . (b x c) / 6, with its sign.",
+            "np.einsum('ij,ij->', a, np.cross(b, c)) / 6",
+        ),
+        praise="the volume without counting a voxel.",
+    ),
+    "6.2": Exercise(
+        cases=_voxel_places,
+        right=lambda index, spacing: index * spacing,
+        error=largest_difference,
+        unit="mm",
+        tolerance=1e-9,
+        form="an array like the one given",
+        mistakes=(
+            (lambda i, s: i, "These are still voxels: 23 of them are not 23 mm."),
+            (lambda i, s: i * s[::-1], "The spacing goes with (plane, row, col); do not turn it round."),
+            (lambda i, s: i[:, ::-1] * s, "The columns of the index are turned round: keep (plane, row, col)."),
+            (lambda i, s: (i * s)[:, ::-1], "These are mm, but with their columns turned round: keep the axes given."),
+            (lambda i, s: (i + 0.5) * s, "Half a voxel off: index 0 is the centre of a voxel, and its place is 0 mm."),
+            (lambda i, s: (i - 0.5) * s, "Half a voxel off: index 0 is the centre of a voxel, and its place is 0 mm."),
+            (lambda i, s: i / s, "Divided where it should multiply: mm = voxels x mm per voxel."),
+            (lambda i, s: i * s.mean(), "One mean spacing squashes the head: each axis has its own."),
+        ),
+        hints=("How many mm is one step along each axis?", "numpy multiplies row by row.", "index * spacing"),
+        praise="the head has its true proportions.",
+    ),
+}
+"""The exercises of lesson 06, by number."""

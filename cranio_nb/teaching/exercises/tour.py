@@ -1,0 +1,73 @@
+"""Exercises of lesson 00: the whole way: volumes and overlap."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .task import Exercise, largest_difference, small_head
+
+
+def _patches():
+    head = small_head()
+    return [(head.implant, (3.0, 1.75, 1.75)), (head.implant[:22], (3.0, 1.75, 1.5)), (head.implant, (1.0, 0.5, 0.8))]
+
+
+def _pairs():
+    patch = small_head().implant
+    return [(patch, np.roll(patch, 1, 2)), (patch, patch), (patch, patch & (np.arange(44) < 20)[:, None, None])]
+
+
+_CUBES = "The three spacings are not equal: use each of them once."
+
+
+EXERCISES: dict[str, Exercise] = {
+    "0.1": Exercise(
+        cases=_patches,
+        right=lambda mask, spacing: mask.sum() * np.prod(spacing) / 1000,
+        error=largest_difference,
+        unit="cm3",
+        tolerance=0.01,
+        form="one number",
+        mistakes=(
+            (lambda m, s: m.sum(), "This counts voxels. Each voxel has a volume: the product of its three spacings."),
+            (lambda m, s: m.sum() * np.prod(s), "This is in mm3; 1 cm3 is 1000 mm3."),
+            (lambda m, s: m.sum() * s[1] * s[2] / 1000, "This is an area: the distance between slices is left out."),
+            (lambda m, s: m.size * np.prod(s) / 1000, "This counts all voxels; mask.sum() counts those that are True."),
+            *(
+                (lambda m, s, to=to: m.sum() * np.prod(s) / to, "1 cm is 10 mm, so 1 cm3 is 10 x 10 x 10 = 1000 mm3.")
+                for to in (10, 100)
+            ),
+            *(
+                (lambda m, s, three=three: m.sum() * np.prod(np.take(s, three)) / 1000, _CUBES)
+                for three in ((0, 0, 0), (1, 1, 1), (2, 2, 2), (0, 1, 1), (0, 2, 2), (0, 0, 1))
+            ),
+        ),
+        hints=(
+            "Count the voxels first.",
+            "Multiply by the volume of one voxel.",
+            "mask.sum() * np.prod(spacing) / 1000",
+        ),
+        praise="voxels became cubic centimetres.",
+    ),
+    "0.2": Exercise(
+        cases=_pairs,
+        right=lambda a, b: 2 * (a & b).sum() / (a.sum() + b.sum()),
+        error=largest_difference,
+        unit="",
+        tolerance=1e-6,
+        form="one number from 0 to 1",
+        mistakes=(
+            (lambda a, b: (a & b).sum() / (a | b).sum(), "This is Jaccard's index: it divides by the union."),
+            (
+                lambda a, b: 2 * (a & b).sum() / (a + b).sum(),
+                "For bool masks a + b means a | b, so what is shared counts once: use a.sum() + b.sum().",
+            ),
+            (lambda a, b: (a & b).sum() / (a.sum() + b.sum()), "The factor 2 is missing: two equal masks must give 1."),
+            (lambda a, b: (a & b).sum() / b.sum(), "This is the part of b that is found; Dice divides by both sizes."),
+            (lambda a, b: (a == b).mean(), "This counts the air as agreement; use only voxels of the masks."),
+        ),
+        hints=("What is shared: a & b.", "Divide by the sum of both sizes.", "2 * (a & b).sum() / (a.sum() + b.sum())"),
+        praise="two equal masks give 1, two strangers 0.",
+    ),
+}
+"""The exercises of lesson 00, by number."""

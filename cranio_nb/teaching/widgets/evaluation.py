@@ -1,0 +1,117 @@
+"""The comparison with the truth under sliders: maps of distances.
+
+Frame: world mm (LPS).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...drawing.canvas import Canvas
+from ...drawing.canvas_axes import Chart
+from ...drawing.palette import SKY, VERMILLION
+from ...drawing.shading import Solid, render
+from ...errors import InputRefused
+from ...evaluation import mesh_distances
+from ...evaluation.against_truth import SIDES
+from ...prosthesis import Prosthesis
+from .controls import Choice, Slider, View
+from .panel import Panel
+from .parts import VIEW, coloured, draw_colour_scale, pixel_to_fit, put_view
+
+_CHART = 350  # px
+
+
+def distances(prosthesis: Prosthesis, truth: Prosthesis) -> Panel:
+    """Map the distances of a prosthesis from the true one.
+
+    Parameters
+    ----------
+    prosthesis, truth : Prosthesis
+        With outer and inner side; `against_truth.check_truth` makes the true one from a mask (``.prosthesis``).
+
+    Returns
+    -------
+    Panel
+        Controls ``side``, ``top_mm`` and ``limit_mm``.
+    """
+    maps = {name: map_distances(prosthesis, truth, side) for name, side in SIDES.items()}
+    top = max(0.2, round(float(np.percentile(maps["outer"].distances, 99)), 1))
+    controls = (
+        Choice("side", "side of the prosthesis", tuple(SIDES), "outer"),
+        Slider("top_mm", "upper end of the scale (mm)", 0.1, 5.0, top, 0.1),
+        Slider("limit_mm", "distance asked about (mm)", 0.0, 5.0, 0.5, 0.1),
+    )
+    alt = "One side of the prosthesis coloured by its distance from the true surface, and a histogram of distances."
+    return Panel(controls, lambda side, **values: _view(maps[side], side, **values), alt=alt)
+
+
+@dataclass(frozen=True, eq=False)
+class DistanceMap:
+    """Distances of one side of a prosthesis.
+
+    Parameters
+    ----------
+    distances : ndarray, shape (V,)
+        mm at the nodes.
+    picture : ndarray, shape (H, W)
+        mm at each pixel of the view; nan beside the surface.
+    px : float
+        mm per pixel.
+    """
+
+    distances: NDArray[np.float64]
+    picture: NDArray[np.float32]
+    px: float
+
+
+def map_distances(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> DistanceMap:
+    """Distances of one side from the same side of the truth, in a view from that side.
+
+    Parameters
+    ----------
+    prosthesis, truth : Prosthesis
+    side : int
+        `OUTER` or `INNER`.
+
+    Returns
+    -------
+    DistanceMap
+
+    Raises
+    ------
+    InputRefused
+        ``EmptyMesh`` where one of the two has no such side.
+    """
+    own, other = prosthesis.surface(side), truth.surface(side)
+    if not len(own.faces) or not len(other.faces):
+        raise InputRefused("EmptyMesh", "The prosthesis or the truth lacks its outer or inner side.")
+    off = mesh_distances.surface_distance(own.vertices, other)
+    towards = own.area_vectors.sum(axis=0)
+    px = pixel_to_fit(own, towards, VIEW - 60)
+    values = np.repeat(off[:, None], 3, axis=1)  # mm in place of colours
+    drawn = render([Solid(own, values)], towards, px_mm=px, shaded=False)
+    return DistanceMap(off, np.where(np.isfinite(drawn.depth), drawn.rgb[..., 0], np.nan), px)
+
+
+def _view(known: DistanceMap, side: str, top_mm: float, limit_mm: float) -> View:
+    """A map of distances with its scale, and their histogram."""
+    canvas = Canvas(VIEW + _CHART, VIEW)
+    put_view(canvas, coloured(known.picture, top_mm), known.px)
+
+    high = max(top_mm, 0.2)
+    counts, edges = np.histogram(np.minimum(known.distances, high), 60, (0, high))
+    chart = Chart((VIEW, 20, _CHART, 300), (0, high), (0, 1.1 * counts.max()))
+    chart.frame(canvas, "nodes", "distance (mm)")
+    chart.bars(canvas, edges, counts, SKY)
+    if limit_mm <= high:
+        chart.upright(canvas, limit_mm, VERMILLION, dash=(6, 4))
+    x, _, width, _ = chart.area
+    draw_colour_scale(canvas, (x, 360), round(width), top_mm)
+
+    d = known.distances
+    line = f"{side.capitalize()} side: mean {d.mean():.2f} mm, std {d.std():.2f} mm, max {d.max():.2f} mm; "
+    return View(canvas.array(), line + f"{100 * (d <= limit_mm).mean():.0f} % of the nodes lie within {limit_mm:g} mm.")

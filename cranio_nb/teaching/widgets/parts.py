@@ -1,0 +1,195 @@
+"""What several panels draw: marks on a slice, the histogram of a CT, a shaded view, a scale of distances.
+
+Frames: slices (row, col) px of the scan, the patient's left on the right; places on a canvas as (x, y) px.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...drawing.canvas import Canvas, round_length
+from ...drawing.canvas_axes import Chart
+from ...drawing.figures import colour_scale
+from ...drawing.palette import GREY, SKY
+from ...drawing.pixels import RGB, Window
+from ...drawing.shading import view_axes
+from ...mesh import Mesh
+from ...volume import Volume
+
+SIDE = 512  # px of a slice's picture
+VIEW = 440  # px of a shaded view
+HU_RANGE = (-1100.0, 2500.0)
+"""HU that histograms show."""
+
+_COLOURS = (colour_scale(1.0).to_rgba(np.linspace(0, 1, 256), bytes=True)[:, :3]).astype(np.uint8)
+_LETTERS = (((0.5, 0.035), "A"), ((0.5, 0.965), "P"), ((0.03, 0.5), "R"), ((0.97, 0.5), "L"))  # place (x, y), side
+
+Histogram = tuple[NDArray, NDArray]
+
+
+def draw_sides(canvas: Canvas, box: tuple[float, float, float, float]) -> None:
+    """Write the sides of the patient, A, P, R and L, at the edges of a picture in the axial plane.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    box : tuple of float
+        x, y, width and height of the picture, px.
+    """
+    x, y, width, height = box
+    for at, letter in _LETTERS:
+        canvas.text(x + at[0] * width, y + at[1] * height, letter, size=14, anchor="mm", halo=True)
+
+
+def annotate_slice(canvas: Canvas, window: Window, grid: Volume, plane: int) -> None:
+    """Write scale bar, sides of the patient and the number of the slice over an axial slice.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    window : Window
+        Where the slice is drawn.
+    grid : Volume
+        Gives the size of a pixel.
+    plane : int
+    """
+    x, y, width, height = window.box
+    px = float(grid.spacing[2])
+    mm = round_length(0.2 * width / window.zoom * px)
+    canvas.scale_bar(x + 14, y + height - 14, mm / px * window.zoom, f"{mm:g} mm")
+    draw_sides(canvas, window.box)
+    canvas.text(x + width - 12, y + height - 14, f"slice {plane}", anchor="rs", halo=True)
+
+
+def count_hu(hu: NDArray, n: int = 120) -> Histogram:
+    """Histogram of the HU of a slice or a scan, over `HU_RANGE`.
+
+    Parameters
+    ----------
+    hu : ndarray, any shape
+    n : int
+        Number of bins.
+
+    Returns
+    -------
+    edges : ndarray of float, shape (n + 1,)
+        HU.
+    counts : ndarray of int, shape (n,)
+        Voxels.
+
+    Examples
+    --------
+    >>> edges, counts = count_hu(np.array([0, 10, 1000, 9000]), n=2)
+    >>> edges.tolist(), counts.tolist()
+    ([-1100.0, 700.0, 2500.0], [2, 1])
+    """
+    counts, edges = np.histogram(hu, n, HU_RANGE)
+    return edges, counts
+
+
+def hu_chart(canvas: Canvas, box: tuple[float, float, float, float], histogram: Histogram) -> Chart:
+    """Draw a histogram of HU on logarithmic counts.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    box : tuple of float
+        x, y, width and height of the chart, px.
+    histogram : tuple
+        As `count_hu` gives it.
+
+    Returns
+    -------
+    Chart
+        To draw more into.
+    """
+    edges, counts = histogram
+    chart = Chart(box, (edges[0], edges[-1]), (0.8, max(10.0, 1.5 * counts.max())), log=True)
+    chart.frame(canvas, "voxels", "HU")
+    chart.bars(canvas, edges, np.maximum(counts, 0.8), SKY)
+    return chart
+
+
+def coloured(distances: NDArray[np.float32], top: float) -> RGB:
+    """Colours of a picture of distances, in the scale cividis.
+
+    Parameters
+    ----------
+    distances : ndarray, shape (H, W)
+        mm; nan where there is none.
+    top : float
+        Upper end of the scale, mm.
+
+    Returns
+    -------
+    ndarray of uint8, shape (H, W, 3)
+        White where there is no distance.
+
+    Examples
+    --------
+    >>> coloured(np.array([[0.0, np.nan, 2.0, 9.0]], np.float32), 2.0)[0].tolist()
+    [[0, 34, 77], [255, 255, 255], [253, 231, 55], [253, 231, 55]]
+    """
+    known = np.isfinite(distances)
+    index = np.clip(np.where(known, distances, 0) * (255 / top), 0, 255).astype(np.uint8)
+    rgb = _COLOURS[index]
+    rgb[~known] = 255
+    return rgb
+
+
+def draw_colour_scale(canvas: Canvas, at: tuple[float, float], width: int, top: float) -> None:
+    """Draw the scale of `coloured` with its ends named below it.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    at : tuple of float
+        x and y of its upper left corner, px.
+    width : int
+        px.
+    top : float
+        Upper end of the scale, mm.
+    """
+    x, y = at
+    canvas.place(coloured(np.broadcast_to(np.linspace(0, top, width, dtype=np.float32), (14, width)), top), x, y)
+    canvas.text(x, y + 34, "0 mm", size=12, colour=GREY)
+    canvas.text(x + width, y + 34, f"{top:g} mm or more", size=12, colour=GREY, anchor="rs")
+
+
+def pixel_to_fit(mesh: Mesh, towards: ArrayLike, size: int) -> float:
+    """Size of a pixel at which a view of a mesh just fits a square.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    towards : array_like, shape (3,)
+        From the mesh to the viewer, LPS.
+    size : int
+        Side of the square, px.
+
+    Returns
+    -------
+    float
+        mm.
+    """
+    flat = mesh.vertices @ view_axes(towards)[:2].T
+    return float(np.ptp(flat, axis=0).max() / size)
+
+
+def put_view(canvas: Canvas, rgb: RGB, px: float) -> None:
+    """Put a rendered view in the middle of the left side of a canvas, with its scale bar.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    rgb : ndarray of uint8, shape (H, W, 3)
+        At most `VIEW` px wide and high.
+    px : float
+        Size of its pixels, mm.
+    """
+    height, width = rgb.shape[:2]
+    canvas.place(rgb, (VIEW - width) // 2, (VIEW - 36 - height) // 2 + 4)
+    length = round_length(0.3 * VIEW * px)
+    canvas.scale_bar(14, VIEW - 12, length / px, f"{length:g} mm")
+    canvas.line([(VIEW, 8), (VIEW, VIEW - 8)], "#DADADA", width=1)

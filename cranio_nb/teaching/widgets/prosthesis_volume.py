@@ -1,0 +1,164 @@
+"""Stage 4 under a slider: the patch of every slice, and how large it is from slice to slice.
+
+Frame: slice (row, col) px of the scan; planes of the scan.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...drawing.canvas import Canvas
+from ...drawing.canvas_axes import Chart
+from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
+from ...drawing.pixels import Window, plain, tinted
+from ...methods.design import design
+from ...methods.slicewise import SliceResult
+from ...opening import Opening
+from ...volume import Volume
+from .controls import Choice, Slider, Switch, View
+from .panel import Panel
+from .parts import SIDE, annotate_slice
+
+PRESSURES = ("from the end tangents", "the paper's constant k")
+_WORDS = {
+    "balloon": ("bridged by its own balloons", SKY),
+    "hull": ("partial loss: hull minus bone", GREEN),
+    "carried": ("carried from its neighbours", ORANGE),
+    "skipped": ("left empty", GREY),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Stack:
+    """The patches of one opening, slice by slice.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask.
+    first : int
+        Plane of the first slice.
+    slices : tuple of SliceResult
+    patches : ndarray of bool, shape (len(slices), R, C)
+    """
+
+    bone: Volume
+    first: int
+    slices: tuple[SliceResult, ...]
+    patches: NDArray[np.bool_]
+
+    @cached_property
+    def areas(self) -> NDArray[np.float64]:
+        """Area of each patch.
+
+        Returns
+        -------
+        ndarray, shape (len(slices),)
+            mm2.
+        """
+        return self.patches.sum(axis=(1, 2)) * float(np.prod(self.bone.spacing[1:]))
+
+    @cached_property
+    def window(self) -> Window:
+        """Where all patches are drawn, with some bone around them.
+
+        Returns
+        -------
+        Window
+        """
+        rows, cols = np.nonzero(self.patches.any(axis=0))
+        low, high = np.array([rows.min(), cols.min()]), np.array([rows.max(), cols.max()])
+        margin = 0.25 * (high - low).max() + 4
+        return Window.around((0, 0, SIDE, SIDE), low - margin, high + margin)
+
+
+def patch(bone: Volume, opening: Opening) -> Panel:
+    """Fill the gap of every slice: between the curves, or by the hull where the loss is partial.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    opening : Opening
+
+    Returns
+    -------
+    Panel
+        Controls ``plane``, ``pressure`` and ``curves``.
+    """
+    made = lru_cache(maxsize=2)(lambda pressure: fill_slices(bone, opening, pressure))
+    first = made(PRESSURES[0]).first
+    last = first + len(made(PRESSURES[0]).slices) - 1
+    controls = (
+        Slider("plane", f"slice ({first} to {last})", first, last, sum(opening.planes) // 2),
+        Choice("pressure", "pressure k", PRESSURES, PRESSURES[0]),
+        Switch("curves", "show the curves", True),
+    )
+    alt = "A slice with its bone, the two curves across the gap and the patch between them; beside it the patch's area."
+    return Panel(controls, lambda pressure, **values: _view(made(pressure), **values), alt=alt)
+
+
+def fill_slices(bone: Volume, opening: Opening, pressure: str) -> Stack:
+    """Curves and patches of all slices of an opening, axial as in the paper.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    opening : Opening
+    pressure : str
+        One of `PRESSURES`.
+
+    Returns
+    -------
+    Stack
+    """
+    own = {"pressure": None} if pressure == PRESSURES[0] else {}
+    made = design(bone, [opening], method="slicewise", preset="paper", **own)
+    (sliced,) = made.working
+    assert made.patch is not None
+    first = round(float(bone.to_voxel(sliced.frames[0, 0])[0]))
+    return Stack(bone, first, sliced.slices, made.patch.voxels[first : first + len(sliced.slices)])
+
+
+def _view(stack: Stack, plane: int, curves: bool) -> View:
+    """One slice with its patch, and the areas of all."""
+    at = plane - stack.first
+    result, mask = stack.slices[at], stack.bone.voxels[plane]
+    words, colour = _WORDS[result.status]
+    canvas = Canvas(SIDE + 350, SIDE)
+    window = stack.window
+    # the slice: bone, patch, curves
+    inset = Canvas(SIDE, SIDE)
+    colour = colour if result.status != "skipped" else SKY
+    inset.show(tinted(tinted(plain(mask.shape), mask, BONE), stack.patches[at], colour), window)
+    if curves:
+        for curve, line, dash in zip(result.curves, (BLUE, VERMILLION), (None, (8, 4)), strict=False):
+            inset.line(window.px(curve), line, width=2.5, dash=dash)
+    annotate_slice(inset, window, stack.bone, plane)
+    inset.legend(SIDE - 140, 6, [(BLUE, "line", "outer curve"), (VERMILLION, "dash", "inner curve")])
+    canvas.inlay(inset, 0, 0)
+    # beside it the areas of all slices
+    _draw_areas(canvas, stack, at)
+    found = sorted({s.status for s in stack.slices}, key=list(_WORDS).index)
+    canvas.legend(SIDE + 58, 330, [(_WORDS[s][1], "area", _WORDS[s][0]) for s in found])
+    line = f"Slice {plane}, {words}: patch of {stack.areas[at]:.0f} mm\N{SUPERSCRIPT TWO}"
+    return View(canvas.array(), line + (f" ({result.reason})." if result.reason else "."))
+
+
+def _draw_areas(canvas: Canvas, stack: Stack, at: int) -> None:
+    """Area of each slice's patch, coloured by how it was filled."""
+    n = len(stack.slices)
+    chart = Chart(
+        (SIDE + 4, 10, 340, 300), (stack.first - 0.5, stack.first + n - 0.5), (0, 1.1 * stack.areas.max() + 1)
+    )
+    chart.frame(canvas, "area of the patch (mm\N{SUPERSCRIPT TWO})", "slice")
+    for i, (result, area) in enumerate(zip(stack.slices, stack.areas, strict=True)):
+        edges = stack.first + i + np.array([-0.42, 0.42])
+        chart.bars(canvas, edges, np.array([area]), _WORDS[result.status][1])
+    (x, y), *_ = chart.px([[stack.first + at, stack.areas[at]]])
+    canvas.dots([(x, y)], "#FFFFFF", radius=4.5, edge=BLACK)

@@ -1,0 +1,91 @@
+"""Stage 1 under sliders: the bone that a threshold leaves.
+
+Frame: slices (row, col) px of the scan, seen from the feet as radiologists do: the patient's left is on the right.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from ...drawing.canvas import Canvas
+from ...drawing.palette import BONE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, YELLOW
+from ...drawing.pixels import RGB, Window, tinted, windowed
+from ...stages import segmentation as stage
+from ...volume import Volume
+from .controls import Slider, Switch, View
+from .panel import Panel
+from .parts import SIDE, Histogram, annotate_slice, count_hu, hu_chart
+
+_PART_COLOURS = (BONE, ORANGE, SKY, PURPLE, YELLOW, VERMILLION)  # of the pieces, the largest first
+_MOST_PARTS = 60  # coloured; the rest are specks
+
+
+def threshold(ct: Volume) -> Panel:
+    """Choose the bone threshold and follow what becomes bone.
+
+    Parameters
+    ----------
+    ct : Volume
+        HU.
+
+    Returns
+    -------
+    Panel
+        Controls ``plane``, ``threshold_hu``, ``max_hole_mm2`` and ``parts``.
+    """
+    last = ct.shape[0] - 1
+    controls = (
+        Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
+        Slider("threshold_hu", "lowest HU of bone", -200, 1500, stage.BONE_HU, 10),
+        Slider("max_hole_mm2", "fill holes up to (mm\N{SUPERSCRIPT TWO})", 0, 200, 60, 5),
+        Switch("parts", "colour the pieces", False),
+    )
+    histogram = count_hu(ct.voxels[:, ::2, ::2])
+    alt = "An axial slice with what the threshold takes for bone, filled holes in green, and the histogram of the CT."
+    return Panel(controls, lambda **values: _view(ct, histogram, **values), alt=alt)
+
+
+def _view(ct: Volume, histogram: Histogram, plane: int, threshold_hu: float, max_hole_mm2: float, parts: bool) -> View:
+    """A slice with its bone, filled holes and pieces, and the histogram with the threshold."""
+    area = float(np.prod(ct.spacing[1:]))
+    raw = stage.apply_threshold(ct.voxels[plane], threshold_hu)
+    bone = stage.fill_holes(raw[None], max_hole_px=max_hole_mm2 / area)[0]
+    labels, n_parts = ndimage.label(bone, np.ones((3, 3)))
+
+    canvas = Canvas(SIDE + 360, SIDE)
+    window = Window.whole((0, 0, SIDE, SIDE), raw.shape)
+    canvas.show(_bone_picture(ct.voxels[plane], raw, bone, labels if parts else None), window)
+    annotate_slice(canvas, window, ct, plane)
+    _draw_threshold(canvas, histogram, threshold_hu)
+    entries = [(BONE, "area", "bone"), (GREEN, "area", "holes filled")]
+    canvas.legend(SIDE + 62, 350, [*entries, (ORANGE, "area", "other pieces")] if parts else entries)
+
+    filled = (np.count_nonzero(bone) - np.count_nonzero(raw)) * area
+    line = (
+        f"Slice {plane} at {threshold_hu:g} HU: {np.count_nonzero(bone) * area / 100:.1f} cm\N{SUPERSCRIPT TWO} of "
+        f"bone in {n_parts} {'piece' if n_parts == 1 else 'pieces'}; {filled:.0f} mm\N{SUPERSCRIPT TWO} of holes "
+        "filled."
+    )
+    return View(canvas.array(), line)
+
+
+def _draw_threshold(canvas: Canvas, histogram: Histogram, threshold_hu: float) -> None:
+    """The histogram of the CT with the threshold."""
+    chart = hu_chart(canvas, (SIDE + 4, 16, 350, 300), histogram)
+    chart.upright(canvas, threshold_hu, VERMILLION, width=3)
+    (x, y), *_ = chart.px([[threshold_hu, chart.y[1]]])
+    canvas.text(x + 6, y + 12, "bone", size=12, colour=VERMILLION, anchor="ls")
+
+
+def _bone_picture(hu: NDArray, raw: NDArray[np.bool_], bone: NDArray[np.bool_], labels: NDArray | None) -> RGB:
+    """Dim CT, bone over it, filled holes in green, pieces in colours where labels are given; shape (R, C, 3)."""
+    rgb = windowed(hu, 200, 1400) // 2
+    if labels is None:
+        rgb = tinted(rgb, raw, BONE)
+    else:
+        by_size = np.argsort(np.bincount(labels.ravel())[1:])[::-1]
+        for rank, part in enumerate(by_size[:_MOST_PARTS]):
+            rgb = tinted(rgb, labels == part + 1, _PART_COLOURS[min(rank, len(_PART_COLOURS) - 1)])
+    return tinted(rgb, bone & ~raw, GREEN)

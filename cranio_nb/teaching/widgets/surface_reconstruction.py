@@ -1,0 +1,89 @@
+"""Stage 5 under sliders: the surface of a patch, smoothing against deviation.
+
+Frame: world mm (LPS).
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...drawing.canvas import Canvas
+from ...drawing.canvas_axes import Chart
+from ...drawing.palette import BLUE, GREEN, ORANGE, SKY, VERMILLION, rgb_shares
+from ...drawing.pixels import RGB
+from ...drawing.shading import Solid, render
+from ...mesh import Mesh
+from ...stages import surface_reconstruction as stage
+from ...volume import Volume
+from .controls import Slider, View
+from .panel import Panel
+from .parts import VIEW, pixel_to_fit, put_view
+
+_CHART = 350  # px
+
+
+def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
+    """Smooth the surface of a patch step by step and follow how far it moves from the stairs.
+
+    Parameters
+    ----------
+    patch : Volume
+        Bool mask.
+    towards : array_like, shape (3,)
+        From the patch to the viewer, LPS; `Opening.direction` looks straight at it.
+
+    Returns
+    -------
+    Panel
+        Control ``steps``.
+    """
+    raw = stage.extract_surface(patch, smooth=False)
+    smoothed = lru_cache(maxsize=None)(lambda n: raw if n == 0 else stage.extract_surface(patch, n_steps=n))
+    shaded = lru_cache(maxsize=None)(lambda n: _shaded(smoothed(n), towards))
+    moved = lru_cache(maxsize=None)(lambda n: np.linalg.norm(smoothed(n).vertices - raw.vertices, axis=1))
+    controls = (Slider("steps", "smoothing steps", 0, 48, 24),)
+    alt = "The shaded surface of the patch after smoothing, and a histogram of how far its vertices moved."
+    bounds = float(patch.spacing.max() / 2), float(np.linalg.norm(patch.spacing) / 2)
+    return Panel(controls, lambda steps: _view(*shaded(steps), moved(steps), bounds, steps), alt=alt)
+
+
+def _view(rgb: RGB, px: float, moved: NDArray[np.float64], bounds: tuple[float, float], steps: int) -> View:
+    """The surface and its deviation from marching cubes, mm.
+
+    `bounds` are half the longest side and half the diagonal of a voxel: from its middle to a wall, and to a corner.
+    """
+    wall, corner = bounds
+    canvas = Canvas(VIEW + _CHART, VIEW)
+    put_view(canvas, rgb, px)
+    _draw_deviation(canvas, moved, wall, corner)
+    what = "Marching cubes as they come" if steps == 0 else f"{steps} smoothing steps"
+    line = f"{what}: vertices moved {moved.mean():.2f} mm on average, {moved.max():.2f} mm at most; "
+    line += f"half a voxel is {wall:.2f} mm along its longest side, {corner:.2f} mm to a corner."
+    return View(canvas.array(), line)
+
+
+def _draw_deviation(canvas: Canvas, moved: NDArray[np.float64], wall: float, corner: float) -> None:
+    """Histogram of how far the vertices moved, beside their mean and the bounds."""
+    counts, edges = np.histogram(moved, 60, (0, corner * 1.05))
+    chart = Chart((VIEW, 20, _CHART, 320), (0, corner * 1.05), (0.8, max(10.0, 1.5 * counts.max())), log=True)
+    chart.frame(canvas, "vertices", "moved from marching cubes (mm)")
+    chart.bars(canvas, edges, np.maximum(counts, 0.8), SKY)
+    chart.upright(canvas, moved.mean(), BLUE, width=2.5)
+    chart.upright(canvas, wall, GREEN, dash=(6, 4))
+    chart.upright(canvas, corner, VERMILLION, dash=(6, 4))
+    legend = [
+        (BLUE, "line", f"mean {moved.mean():.2f} mm"),
+        (GREEN, "dash", f"half a voxel's longest side, {wall:.2f} mm"),
+        (VERMILLION, "dash", f"half a voxel's diagonal, {corner:.2f} mm"),
+    ]
+    canvas.legend(VIEW + 56, 352, legend)
+
+
+def _shaded(mesh: Mesh, towards: ArrayLike) -> tuple[RGB, float]:
+    """A view of the surface, and the size of its pixels in mm."""
+    px = pixel_to_fit(mesh, towards, VIEW - 60)
+    solid = Solid(mesh, rgb_shares(ORANGE))
+    return (255 * render([solid], towards, px_mm=px).rgb).astype(np.uint8), px

@@ -1,0 +1,173 @@
+"""The sheet of D-NURBS of lesson 09 under sliders: pushed into the head, let go, on its way to rest.
+
+Frame: mm along the axes of the radius map, from the point it is taken from.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import lru_cache
+
+import numpy as np
+
+from ....drawing.canvas import Canvas
+from ....drawing.canvas_axes import Chart
+from ....drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY
+from ....methods.dnurbs import method as dnurbs
+from ....methods.dnurbs import sheet_motion
+from ....methods.dnurbs.sheet import Sheet
+from ....methods.dnurbs.sheet_motion import Dynamics, Motion, Setting
+from ....opening import Opening
+from ....prosthesis import Prosthesis
+from ....vault import radius_measurement
+from ....vault.ray_grid import RadiusMap
+from ....volume import Volume
+from ..controls import Slider, View
+from ..panel import Panel
+from .scene import SIDE, WIDE, Scene, error_line, make_scene
+
+MAX_STEPS = 40
+_EVERY = 4  # rays
+_SPAN = 25.0  # mm between the knots of the sheet
+_DEEP = 0.8  # part of its radius to which the sheet is pushed in before it is let go
+_LEAN = np.radians(25)  # of the view onto the net
+_TOL = 0.02  # mm a step: at rest
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A sheet on its way to rest.
+
+    Parameters
+    ----------
+    setting : Setting
+        What acts on it.
+    motions : tuple of Motion
+        Before the first step, and after each.
+    """
+
+    setting: Setting
+    motions: tuple[Motion, ...]
+
+
+def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = None) -> Panel:
+    """Push a sheet of D-NURBS into the head and let it go until it is at rest; play, pause, step and scrub.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    opening : Opening
+    truth : Prosthesis, optional
+        The missing bone with its patch, where it is known (`against_truth.true_prosthesis`).
+
+    Returns
+    -------
+    Panel
+        Controls ``wavelength_mm``, ``mass``, ``damping`` and ``step``.
+    """
+    scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
+    run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.vault, **values))
+    controls = (
+        Slider("wavelength_mm", "wavelength that is halved: rigidity (mm)", 5, 80, 20, log=True),
+        Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5),
+        Slider("damping", "\N{GREEK SMALL LETTER GAMMA}: damping per parameter area", 0.1, 100, 1, log=True),
+        Slider("step", "step", 0, MAX_STEPS, MAX_STEPS, player=True),
+    )
+    alt = (
+        "A net of control points over the bone and the sheet it carries at the chosen step; beside it a cut through "
+        "the sheet, and its energy at every step."
+    )
+    return Panel(controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, slow=True)
+
+
+def relax_sheet(vault: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
+    """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps.
+
+    Parameters
+    ----------
+    vault : RadiusMap
+        Of few rays, or it takes long.
+    wavelength_mm : float
+        Ripples of this length are halved.
+    mass, damping : float
+        Per parameter area.
+
+    Returns
+    -------
+    Way
+    """
+    setting = dnurbs.fit(vault, wavelength=wavelength_mm, tension=0.0, span=_SPAN).settings[0]
+    dynamics = Dynamics(mass=mass, damping=damping)
+    deep = replace(setting.natural, control=setting.natural.control * _DEEP)
+    motions = [sheet_motion.start(deep, setting, dynamics)]
+    sheet_motion.relax(
+        motions[0], setting, dynamics, tol=_TOL, max_iter=MAX_STEPS, iter_callback=lambda m: motions.append(m)
+    )
+    return Way(setting, tuple(motions))
+
+
+def _view(scene: Scene, way: Way, step: int) -> View:
+    """Net and sheet at a step, a cut, and the energy."""
+    last = len(way.motions) - 1
+    now = way.motions[min(step, last)]
+    canvas = Canvas(SIDE + WIDE, SIDE)
+    _draw_net(canvas, way, now.sheet)
+    _draw_cut(canvas, way, now.sheet)
+    _draw_energy(canvas, way, min(step, last))
+    state = "at rest" if now.converged else "not at rest"
+    line = f"Step {min(step, last)} of {last}, {state}: energy {now.energy:.0f} mm4"
+    line += f", moved {now.moved:.2f} mm at most" if now.n_iter else ""
+    hole = scene.vault.hole
+    off = (dnurbs.radii_of(now.sheet, scene.vault) - scene.true)[hole]
+    line += f"; {error_line(off)} in the hole" if np.isfinite(off).any() else ""
+    return View(canvas.array(), line + ".", limits={"step": last})
+
+
+def _draw_net(canvas: Canvas, way: Way, one: Sheet) -> None:
+    """Control net, sheet and bone, seen from outside and a little from below."""
+    # seen along a line that leans by _LEAN; the last shape and the bone set the scale
+    flat = lambda points: points @ np.array([[1, 0], [0, np.cos(_LEAN)], [0, -np.sin(_LEAN)]])  # noqa: E731
+    springs = way.setting.springs.points
+    every = flat(np.concatenate([way.motions[-1].sheet.control.reshape(-1, 3), springs]))
+    zoom, middle = (SIDE - 40) / np.ptp(every, axis=0).max(), (every.min(axis=0) + every.max(axis=0)) / 2
+    place = lambda points: (flat(points) - middle) * zoom + SIDE / 2  # noqa: E731
+    inset = Canvas(SIDE, SIDE)
+    inset.dots(place(springs), BONE, radius=1.5)
+    # lines of the sheet twice in each span, then its control net
+    (n, m), fine = one.spans, 48
+    for v in np.linspace(0, n, 2 * n + 1):
+        inset.line(place(one.at(np.full(fine, v), np.linspace(0, m, fine))), SKY, width=1.5)
+    for u in np.linspace(0, m, 2 * m + 1):
+        inset.line(place(one.at(np.linspace(0, n, fine), np.full(fine, u))), SKY, width=1.5)
+    for points in (*one.control, *one.control.swapaxes(0, 1)):
+        inset.line(place(points), ORANGE, width=1)
+    inset.dots(place(one.control.reshape(-1, 3)), ORANGE, radius=3, edge=BLACK)
+    inset.legend(6, 6, [(ORANGE, "dot", "control net"), (SKY, "line", "sheet"), (BONE, "dot", "bone")])
+    canvas.inlay(inset, 0, 0)
+
+
+def _draw_cut(canvas: Canvas, way: Way, one: Sheet) -> None:
+    """The middle of the sheet across the head: bone that pulls, sheet, and its row of control points."""
+    springs, middle = way.setting.springs, one.spans[0] / 2
+    points = springs.points[np.abs(springs.v - middle) < 0.1]
+    control = one.control[len(one.control) // 2]
+    wide = float(np.abs(springs.points[:, 0]).max()) + 5
+    high = float(springs.points[:, 2].max()) + 8
+    cut = Chart((SIDE, 0, WIDE, 250), (-wide, wide), (float(springs.points[:, 2].min()) - 8, high))
+    cut.frame(canvas, "a cut through the middle: out of the head (mm)", "across the hole (mm)")
+    canvas.dots(cut.px(points[:, [0, 2]]), BONE, radius=3.5, edge=BLACK)
+    u = np.linspace(0, one.spans[1], 80)
+    canvas.line(cut.px(one.at(np.full(80, middle), u)[:, [0, 2]]), BLUE, width=2.5)
+    canvas.line(cut.px(control[:, [0, 2]]), ORANGE, width=1, dash=(5, 4))
+    canvas.dots(cut.px(control[:, [0, 2]]), ORANGE, radius=3.5, edge=BLACK)
+
+
+def _draw_energy(canvas: Canvas, way: Way, step: int) -> None:
+    """Energy at every step, the present one marked."""
+    energy = np.array([motion.energy for motion in way.motions])
+    limits = (energy.min() / 1.3, energy.max() * 1.5)
+    curve = Chart((SIDE, 250, WIDE, SIDE - 250), (0, len(energy)), limits, log=True)
+    curve.frame(canvas, "energy: bending, springs and motion (mm\N{SUPERSCRIPT FOUR})", "step")
+    canvas.line(curve.px(np.column_stack([np.arange(len(energy)), energy])), SKY, width=2)
+    canvas.dots(curve.px([[step, energy[step]]]), "#FFFFFF", radius=5, edge=BLACK)

@@ -1,0 +1,224 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 06 Surface reconstruction: from voxels to something that can be made
+#
+# A machine wants triangles, not voxels. Marching cubes makes them, but it makes stairs as well: the paper complains of
+# its own "staircase defect". This lesson makes the surface, smooths it as far as the data allow, and asks whether the
+# result can be built at all.
+#
+# **After this lesson you can**
+# - explain what marching cubes does and where the stairs come from;
+# - smooth a surface and say how far it moved, in mm;
+# - check a mesh before it leaves the house, and compute its volume and mass.
+#
+# **Time:** 40 minutes (text 20, questions 5, exercises 15). **You need:** lesson 05; the cross product.
+#
+# **From the paper:** stage 5, Figure 8, and the staircase of section 4.
+
+# %%
+import numpy as np
+
+import cranio_nb as cn
+from cranio_nb.implant.mass import DENSITIES, weigh_implant
+from cranio_nb.stages import surface_reconstruction
+from cranio_nb.teaching import check, classroom, pictures, widgets
+
+# %% [markdown]
+# ## Parameters
+#
+# | name | meaning | unit | paper |
+# |---|---|---|---|
+# | `smooth` | place vertices between the voxels | | no |
+# | `n_steps` | steps of the relaxation | 1 | |
+#
+# *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
+# scan of your own.
+
+# %% tags=["nbval-check-output"]
+case = classroom.load("class")
+bone = cn.segment(case.ct)
+openings = cn.find_openings(bone)
+made = cn.design(bone, openings)
+patch = made.patch
+print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
+
+# %% [markdown]
+# ## 1. Marching cubes
+#
+# Take eight neighbouring voxels as the corners of a cube. Some are in, some are out: 256 cases. A table gives the
+# triangles of each case, with corners half-way along the edges of the cube. March on to the next cube.
+#
+# **Predict.** Planes are 2.5 mm apart, pixels 0.9 mm. How high will the stairs be?
+
+# %% tags=["nbval-check-output"]
+raw = surface_reconstruction.extract_surface(patch, smooth=False)
+smooth = surface_reconstruction.extract_surface(patch)
+print(f"raw: {len(raw.faces)} faces, area {raw.areas.sum() / 100:.1f} cm2")
+print(f"smooth: {len(smooth.faces)} faces, area {smooth.areas.sum() / 100:.1f} cm2")
+
+# %% tags=["nbval-check-output"]
+towards = openings[0].direction + [0, 0, 0.4]
+fig, panels = pictures.axes(2, height=4.4)
+for ax, (name, mesh) in zip(panels, {"raw": raw, "smooth": smooth}.items(), strict=True):
+    pictures.show_meshes(ax, [(mesh, pictures.BLUE)], towards, title=name, px=0.14)
+alt = "The prosthesis twice: raw with steps like the contour lines of a map; smoothed without."
+pictures.picture(
+    fig, alt, f"area {raw.areas.sum() / 100:.1f} and {smooth.areas.sum() / 100:.1f} cm2"
+)
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# One plane high (2.5 mm) where the surface is nearly horizontal, one pixel deep (0.9 mm) where it is nearly vertical.
+#
+# Stairs also add area, however fine the voxels are: the faces of cubes add 41 % on a slope of 45 degrees. Marching
+# cubes cuts the corners of the steps, so it adds nothing at 45 degrees and 8 % on a slope of 1 in 2. Flat voxels do
+# it worse: here raw is 11 % more than smooth. Volume has no such flaw.
+#
+# </details>
+#
+# ## 2. How far may it move?
+#
+# Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half
+# a voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface` finds the smoothest
+# surface within these bounds and keeps the volume.
+
+# %% tags=["nbval-check-output"]
+moved = surface_reconstruction.measure_deviation(raw, smooth)
+bound = np.linalg.norm(patch.spacing) / 2
+print(
+    f"moved by {moved.mean_mm:.2f} mm on average, {moved.max_mm:.2f} at most; allowed {bound:.2f}"
+)
+print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm3 after")
+
+# %% [markdown]
+# **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
+# leave the bound by taking very many? Where will the vertices pile up that are stopped by it?
+
+# %% tags=["nbval-check-output"]
+widgets.surface(patch)
+
+# %% tags=["nbval-check-output"]
+for steps in (0, 1, 5, 10, 24, 200):
+    after = surface_reconstruction.extract_surface(patch, n_steps=steps)
+    moved = surface_reconstruction.measure_deviation(raw, after)
+    print(
+        f"{steps:3} steps: area {after.areas.sum() / 100:.2f} cm2, moved {moved.mean_mm:.2f} mm"
+    )
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# About ten steps bring most of it, and two hundred hardly more than the default 24. (0 steps already put the vertices
+# between the voxels by distance; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
+# clipped to its box of half a voxel in every step.
+#
+# What would go further stops at a wall of the box. Most walls that matter here are half a plane away: hence the pile
+# near 1.25 mm. Only a vertex that is stopped along all three axes sits in a corner of the box, at 1.40 mm.
+#
+# </details>
+#
+# ## 3. Can it be built?
+#
+# A solid has an inside. What the check counts:
+#
+# - *open edge*: an edge that does not join exactly two faces; the skin has a hole there;
+# - *flipped edge*: its two faces disagree on which side is outside;
+# - *pinch*: two parts of the skin touch in a single point;
+# - *parts*: pieces that no edge connects; an implant should be one for each hole;
+# - *crossings*: pairs of faces that cut through each other;
+# - *manifold*: no open edges, no flipped ones, no pinches: around every point the skin is like one bent sheet of paper.
+
+# %% tags=["nbval-check-output"]
+report = cn.check_mesh(smooth)
+print(
+    f"open edges {report.n_open_edges}, flipped {report.n_flipped_edges}, "
+    f"pinches {report.n_pinches}"
+)
+print(f"parts {report.n_parts}, crossings {report.n_crossings}, sound: {report.sound}")
+print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
+
+# %% [markdown]
+# **Can it?** Yes, if it is `sound` (manifold, of positive volume, without crossings), in one part for each hole, and
+# nowhere too thin: below about 2 mm a workshop will warn you. All this holds here. Whether it can also be put *in* is
+# another question: a rim that widens inwards holds it back.
+
+# %% tags=["nbval-check-output"]
+data = weigh_implant(smooth)
+print(f"{data.volume_cm3:.1f} cm3")
+for material, mass in data.mass_g.items():
+    print(f"{material:10} {DENSITIES[material]:.2f} g/cm3  {mass:5.1f} g")
+
+# %% tags=["nbval-check-output"]
+folder = classroom.scratch_folder()
+for path in cn.save(made, folder):
+    print(path.name)
+size = (folder / "prosthesis.stl").stat().st_size
+print(f"prosthesis.stl: {size} bytes = 84 + 50 x {len(made.mesh.faces)} faces")
+
+# %% [markdown]
+# Note that an STL file knows no unit. Everybody assumes mm; 3MF says so.
+#
+# ## A mistake to make once
+#
+# Give the workshop the outer side only. It looks fine on screen, but it is a skin without an inside:
+
+# %% tags=["raises-exception"]
+skin = made.surface(cn.prosthesis.OUTER)
+cn.save(cn.Prosthesis(skin, made.sides, None, made.method), folder)
+
+# %% [markdown]
+# ## Exercises
+#
+# **Exercise 6.1.** The volume of a closed mesh. Each face and the origin make a tetrahedron of (signed) volume
+# a . (b x c) / 6. Add them up and keep the sign: a mesh turned inside out has a negative volume.
+
+
+# %% tags=["solution"]
+def mesh_volume(vertices, faces):
+    """Volume enclosed by triangles (F, 3) of vertices (V, 3)."""
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return np.einsum("ij,ij->", a, np.cross(b, c)) / 6
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("6.1", mesh_volume)
+
+# %% [markdown]
+# **Exercise 6.2.** Forgotten spacing. Marching cubes on a plain array gives vertices in voxels. Turn them into mm.
+
+
+# %% tags=["solution"]
+def to_mm(index, spacing):
+    """Positions in mm of indices (n, 3), along the same axes; spacing (3,) in mm."""
+    return index * spacing
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("6.2", to_mm)
+
+# %% [markdown]
+# ## Summary
+#
+# - Marching cubes is exact about what is in and out, and blind between voxels: hence the stairs.
+# - Smooth within half a voxel, and say how far.
+# - A mesh that leaves must be closed, manifold and free of crossings.
+#
+# | paper | code | unit |
+# |---|---|---|
+# | marching cubes | `surface_reconstruction.extract_surface(smooth=False)` | mm |
+# | staircase defect | `surface_reconstruction.extract_surface(smooth=True)` | mm |
+# | digital model | `Prosthesis.mesh`, `cn.save` | mm |
+# | top, inner surface | `Prosthesis.surface(OUTER)`, `(INNER)` | mm |
+#
+# **Further reading.** Lorensen and Cline, *Marching cubes*, SIGGRAPH 1987. Gibson, *Constrained elastic surface nets*
+# (1998).

@@ -1,0 +1,215 @@
+# ---
+# jupyter:
+#   kernelspec:
+#     display_name: Python 3 (ipykernel)
+#     language: python
+#     name: python3
+# ---
+
+# %% [markdown]
+# # 07 Evaluation: how good is it, really?
+#
+# A prosthesis that looks right may be wrong by 3 mm. This lesson measures, in mm, both ways, and shows how each measure
+# can be fooled. It also puts the paper's own yardstick, the mirrored head, on trial.
+#
+# **After this lesson you can**
+# - compute Dice, surface distances and HD95 and say what each does not see;
+# - remake a row of the paper's Table 3, and its colour map (Figure 9);
+# - explain why a mirrored skull is not the truth.
+#
+# **Time:** 45 minutes (text 20, questions 10, exercises 15). **You need:** lessons 00 and 06.
+#
+# **From the paper:** section 3, Table 3, Figure 9.
+
+# %%
+import numpy as np
+from scipy import ndimage, spatial
+
+import cranio_nb as cn
+from cranio_nb.evaluation import against_truth, paper_tables
+from cranio_nb.teaching import check, classroom, widgets
+
+# %% [markdown]
+# ## Parameters
+#
+# None to tune: an evaluation that can be tuned is none.
+#
+# *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, for this lesson needs
+# a truth: `classroom.load(scan="path/to/your/scan", truth="path/to/its/truth.nii.gz")`.
+
+# %%
+case = classroom.load("class", needs_truth=True)
+bone, truth = cn.segment(case.ct), case.truth
+openings = cn.find_openings(bone)
+made = cn.design(bone, openings)
+seen = against_truth.check_truth(made, truth, bone, openings[0].head_centre)
+
+# %% [markdown]
+# ## 1. Table 3: distances of nodes
+#
+# The paper takes each node of the prosthesis' top (outer) and inner surface and measures its distance from the true
+# surface, in voxels: smallest, largest, mean, standard deviation. Its truth is a mirrored skull and its head another
+# one, so look at the kind of number, not at who wins.
+
+# %% tags=["nbval-check-output"]
+print("in voxels       min   max   mean  std")
+for whose, table in (("ours", seen.table3), ("the paper's", paper_tables.PAPER_DISTANCES)):
+    for side in ("outer", "inner"):
+        row = table[side]
+        print(f"{side} {whose:11} {row.min:5.2f} {row.max:5.2f} {row.mean:5.2f} {row.std:5.2f}")
+
+# %% [markdown]
+# Voxels are no good unit: one is 2.5 mm high and 0.9 mm wide. From here on we use mm.
+#
+# **Predict, then move, then explain.** Where on the prosthesis will the largest distances lie: in its middle or at its
+# rim? Switch to the inner side (its numbers are printed too). Is it better or worse?
+
+# %% tags=["nbval-check-output"]
+panel = widgets.distances(made, seen.prosthesis)
+for side in ("inner", "outer"):
+    print(panel.set(side=side).view.line)
+panel
+
+# %% tags=["nbval-check-output"]
+to_bone = spatial.cKDTree(bone.to_world(np.argwhere(bone.voxels)))
+for side, code in against_truth.SIDES.items():
+    off, far = seen.distances[side], to_bone.query(made.surface(code).vertices)[0]
+    worst = far[off > 0.7 * off.max()]
+    middle = off[far > 0.7 * far.max()].mean()
+    print(f"{side}: the largest lie {worst.min():.1f} to {worst.max():.1f} mm from bone")
+    print(f"{side}: the middle is {middle:.2f} mm off on average")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# At the rim: all of the largest lie within 3.3 mm of bone, where one voxel more or less of slanted bone decides.
+# One would expect the middle to be worst, for it is farthest from any bone, and one wrong tangent (lesson 05) does
+# most harm there. But here six directions are averaged, and the middle is one of the *best* places. The inner side is
+# a little worse than the outer: the gap's inner ends are harder to see.
+#
+# </details>
+#
+# **Question.** Half of the prosthesis is cut off. What happens to the mean distance of Table 3?
+#
+# <details>
+# <summary>Answer</summary>
+#
+# Nearly nothing! The nodes that are left still lie near the truth. A one-way distance does not see what is *missing*.
+# So we also look from the truth to the prosthesis.
+#
+# </details>
+#
+# ## 2. How measures can be fooled
+#
+# **Predict** for each of these what Dice and HD95 do: (a) the truth, moved by one voxel from left to right, which for
+# this hole in the side of the head is *across* the plate; (b) half of the truth; (c) the truth, one voxel thicker all
+# round.
+
+# %%
+middle = np.nonzero(truth.voxels)[0].mean()  # plane
+half = truth.voxels & (np.arange(truth.shape[0]) < middle)[:, None, None]
+thick = ndimage.binary_dilation(truth.voxels, iterations=1) & ~bone.voxels
+tries = {
+    "our design": made.patch.voxels,
+    "moved by one voxel": np.roll(truth.voxels, 1, axis=2),
+    "half of it": half,
+    "one voxel thicker": thick,
+}
+
+# %% tags=["nbval-check-output"]
+to_truth = spatial.cKDTree(truth.to_world(np.argwhere(truth.voxels)))
+print("                     Dice   HD95   one way, mm")
+for name, voxels in tries.items():
+    s = cn.score(truth.with_voxels(voxels), truth, bone)
+    one_way = to_truth.query(truth.to_world(np.argwhere(voxels)))[0].mean()
+    print(f"{name:20} {s.dice:.3f} {s.hd95:6.2f} {one_way:8.2f}")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# (a) For a thin shell Dice is harsh: a shift by one voxel (0.9 mm) across it costs far more than it would of a ball:
+# 0.830, our design 0.969. HD95 does not see the difference: both have 0.90 mm, one pixel. (b) HD95 sees what is
+# missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is as bad as the shift for Dice
+# (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints several.
+#
+# </details>
+#
+# ## 3. The mirror on trial
+#
+# The paper has no truth. It takes the mirrored sound side instead. Let us do so: flip the bone left to right, find the
+# shift at which it covers the skull best, and cut out what fills the hole.
+
+# %% tags=["nbval-check-output"]
+flipped = bone.voxels[:, :, ::-1]
+shifts = np.arange(-15, 16)
+cover = [(np.roll(flipped, s, 2) & bone.voxels).sum() for s in shifts]
+best = shifts[np.argmax(cover)]
+near = ndimage.binary_dilation(openings[0].sheet.voxels, iterations=6)
+mirror = truth.with_voxels(np.roll(flipped, best, 2) & ~bone.voxels & near)
+s = cn.score(mirror, truth, bone)
+print(f"mirror, shifted by {best} columns: Dice {s.dice:.3f}, HD95 {s.hd95:.2f} mm")
+print(f"our design:                  Dice {seen.score.dice:.3f}, HD95 {seen.score.hd95:.2f} mm")
+
+# %% [markdown]
+# Heads are not quite symmetric, and a head in a scanner is never quite straight. A yardstick that is itself off by
+# this much cannot tell a method that is off by 1 mm from one that is off by half. Where the defect crosses the middle
+# there is no mirror at all. The paper is right to call it a *similarity* measure.
+#
+# ## A mistake to make once
+#
+# Compare masks that stand on different grids, here one whose planes are said to be nearer. As arrays they have the same
+# shape, even the same voxels, and a Dice of 1; the volumes know better:
+
+# %% tags=["raises-exception"]
+nearer = cn.Volume(truth.voxels, truth.affine @ np.diag([0.8, 1, 1, 1]))
+cn.score(nearer, truth, bone)
+
+# %% [markdown]
+# ## Exercises
+#
+# **Exercise 7.1.** HD95 of two sets of points (n, 3) in mm: distances to the nearest point, both ways, joined; the 95th
+# percentile of them. (`spatial.cKDTree` is imported.)
+
+
+# %% tags=["solution"]
+def hd95(a, b):
+    """95th percentile of the distances to the nearest point, both ways, mm."""
+    there, back = spatial.cKDTree(b).query(a)[0], spatial.cKDTree(a).query(b)[0]
+    return np.percentile(np.concatenate([there, back]), 95)
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("7.1", hd95)
+
+# %% [markdown]
+# **Exercise 7.2.** Mirror points (n, 3) at the plane through `origin` with the unit normal `normal`.
+
+
+# %% tags=["solution"]
+def mirrored(points, normal, origin):
+    """Points on the other side of a plane, as far from it."""
+    distance = (points - origin) @ normal
+    return points - 2 * distance[:, None] * normal
+
+
+# %% tags=["check", "nbval-check-output"]
+check.exercise("7.2", mirrored)
+
+# %% [markdown]
+# ## Summary
+#
+# - One-way distances miss what is missing. Dice is harsh on thin shells. Show several measures.
+# - Give distances in mm: a voxel here is 0.9 mm in one direction and 2.5 mm in another.
+# - A mirror is a guess, not a truth.
+#
+# | paper | code | unit |
+# |---|---|---|
+# | distance field | `mesh_distances.surface_distance` | mm |
+# | Min., Max., Mean, StD. | `mesh_distances.distance_stats` | mm or voxels |
+# | in voxel units | `mesh_distances.in_voxels` | voxels |
+# | similarity by reflection | section 3 above | |
+#
+# **Further reading.** Maier-Hein and others, *Metrics reloaded*, Nature Methods 21 (2024). Li and others, *AutoImplant
+# 2020*, IEEE Transactions on Medical Imaging 40 (2021).

@@ -1,0 +1,19 @@
+"""The command `demo`: a whole run on a synthetic head."""
+
+from cli_runs import OUTPUTS, assert_refused, cranio, digest
+
+from cranio_nb.pipeline import run
+
+
+def test_demo_can_be_run_twice_but_never_replaces_a_strangers_series(paper, tmp_path, monkeypatch):
+    out = tmp_path / "demo"
+    for _ in range(2):
+        result = cranio("demo", "--size", "tiny", "--out", out)
+        assert result.exit_code == 0, result.output
+        monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
+    assert {p.name for p in out.iterdir()} == OUTPUTS | {"ct", "truth.nii.gz", "truth.json"}
+    assert len(list((out / "ct").iterdir())) == 44
+    (out / "truth.json").unlink()
+    before = digest(out)
+    assert_refused(cranio("demo", "--size", "tiny", "--out", out), 5)
+    assert digest(out) == before

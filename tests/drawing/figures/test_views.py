@@ -1,0 +1,33 @@
+"""Views and distance maps: from where, with the sides named, at the scale and in the colours they claim."""
+
+import numpy as np
+import pytest
+from shapes import ball
+
+from cranio_nb.drawing import figures
+
+
+def test_three_views_show_the_opening():
+    views = figures.views_of([(0.9, 0.1, 0.4)])
+    assert list(views) == ["facing the opening", "from the left", "from above"]
+    np.testing.assert_allclose(views["facing the opening"], (0.9, 0.1, 0.4))
+    assert list(figures.views_of([(1, 0, 0), (-0.9, 0, 0.1), (-0.9, 0, 0.1)]))[1] == "from the right"
+    three = figures.views_of([(0.8, 0, 0.6), (-0.4, 0.8, 0.4), (0, -1, 0)])
+    assert set(three) == {"facing the opening", "from the front", "from the back"}
+
+
+def test_distance_map_has_the_colours_of_its_scale():
+    mesh = ball()
+    figure = figures.distance_figure(mesh, mesh, np.full(len(mesh.vertices), 1.0), (0, -1, 0), top_mm=2.0)
+    shown = np.asarray(figure.axes[0].images[0].get_array())
+    middle = shown[shown.shape[0] // 2, shown.shape[1] // 2]
+    np.testing.assert_allclose(middle, figures.colour_scale(2.0).to_rgba(1.0)[:3], atol=0.01)
+    assert "mm" in figure.axes[0].texts[-1].get_text()
+
+
+def test_view_names_the_patients_sides():
+    figure = figures.view_figure(ball(radius=30), ball((0, -25, 0), 8), (0, -1, 0))
+    places = {t.get_text(): t.get_position() for t in figure.axes[0].texts}
+    assert places["L"][0] > places["R"][0] and "S" in places and "50 mm" in places
+    bar = figure.axes[0].lines[-1].get_xdata()
+    assert np.ptp(bar) * 0.6 == pytest.approx(50)

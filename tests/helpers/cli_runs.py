@@ -1,0 +1,31 @@
+"""Commands as a user runs them, and what a refusal looks like."""
+
+import hashlib
+from pathlib import Path
+
+from click.testing import CliRunner, Result
+
+from cranio_nb.cli.main import main
+
+OUTPUTS = {"prosthesis.stl", "patch.nii.gz", "design.json", "report.html"}
+
+
+def cranio(*arguments: object) -> Result:
+    """Run a command."""
+    return CliRunner().invoke(main, [str(a) for a in arguments])
+
+
+def digest(folder: Path) -> dict[str, str]:
+    """Hash of every file below a folder."""
+    files = sorted(p for p in folder.rglob("*") if p.is_file())
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest() for p in files}
+
+
+def assert_refused(result: Result, code: int, *words: str) -> None:
+    """One sentence on stderr, nothing on stdout, no traceback, no full path."""
+    assert result.exit_code == code, result.output
+    assert result.stdout == ""
+    assert result.stderr.startswith("cranio-nb: ") and result.stderr.count("\n") == 1
+    assert "Traceback" not in result.stderr and "/" not in result.stderr.replace("0/1", "")
+    for word in words:
+        assert word in result.stderr

@@ -1,0 +1,35 @@
+"""Points of a hollow ball along rays from its centre, and how much of a vault they cover."""
+
+import numpy as np
+import pytest
+
+from cranio_nb.prior.head_frame import HeadFrame, even_directions
+from cranio_nb.prior.skull_points import measure_outline, sample_surface, vault_coverage
+from cranio_nb.volume import Volume
+
+
+def test_the_outline_of_a_hollow_ball_is_its_two_radii():
+    n, step, centre = 101, 2.0, np.array([30.0, -40.0, 800.0])
+    affine = np.array([[0, 0, step, 0], [0, step, 0, 0], [step, 0, 0, 0], [0, 0, 0, 1.0]])
+    affine[:3, 3] = centre - step * (n - 1) / 2
+    radius = step * np.linalg.norm(np.indices((n, n, n)) - (n - 1) / 2, axis=0)
+    ball = Volume((radius > 70) & (radius < 80), affine)
+    directions = even_directions(3)
+    outer, inner = measure_outline(ball, HeadFrame(np.eye(3), centre), directions)
+    assert np.isfinite(outer[directions[:, 2] > 0]).all() and np.isnan(outer[directions[:, 2] < -0.5]).all()
+    assert np.nanmax(np.abs(outer - 80)) < step and np.nanmax(np.abs(inner - 70)) < step
+    # in a frame twice as large the same ball has half the radius
+    larger, _ = measure_outline(ball, HeadFrame(2 * np.eye(3), centre), directions)
+    assert np.nanmax(np.abs(larger - 40)) < step
+
+
+def test_points_lie_on_the_phantom(phantom, intact):
+    head, points = phantom("round", 1).head, sample_surface(intact(1))
+    p = points.centre + points.outer @ points.axes.T - head.centre
+    away = np.linalg.norm(p, axis=1)
+    assert np.median(np.abs(away - head.outer_radius(p / away[:, None]))) < 1.5
+
+
+def test_a_hole_is_not_covered(intact, skull):
+    assert vault_coverage(intact(0)) == pytest.approx(1.0, abs=0.01)
+    assert vault_coverage(skull("large", 0)) < 0.95

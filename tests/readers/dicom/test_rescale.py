@@ -1,0 +1,131 @@
+"""Stored numbers to HU: by hand, slice by slice, and refused where slope or intercept cannot be true."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from dicom_series import codes, edit, head, save, series, set_pixels
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cranio_nb.errors import InputRefused
+from cranio_nb.readers import read_ct
+from cranio_nb.readers.dicom.rescale import apply_rescale, check_levels, check_rescale, check_unscaled
+
+SMALL = (9, 22, 26)
+
+
+def test_eight_bit_slices_have_their_own_rescale(tmp_path: Path) -> None:
+    hu = np.rint(head(SMALL) / 10).astype(np.int16) * 10
+    volume, _ = read_ct(save(tmp_path / "scan", series(hu, bits=8, slope=10, intercept=-1000)))
+    np.testing.assert_array_equal(volume.voxels, hu)
+
+
+def test_each_slice_is_rescaled_by_its_own_slope(tmp_path: Path) -> None:
+    hu = head(SMALL)
+    datasets = series(hu)
+    for k, ds in enumerate(datasets):
+        ds.RescaleIntercept = -1024 - k
+        stored = np.frombuffer(ds.PixelData, "<u2").reshape(ds.Rows, ds.Columns)
+        set_pixels(ds, stored.astype(int) + k)
+    volume, report = read_ct(save(tmp_path / "scan", datasets))
+    np.testing.assert_array_equal(volume.voxels, hu)
+    assert "RescaleVaries" in {f.code for f in report.findings}
+
+
+def test_broken_slopes_give_real_hu(tmp_path: Path) -> None:
+    hu = head(SMALL)
+    volume, _ = read_ct(save(tmp_path / "scan", series(hu, slope=0.25, intercept=-1024.5)))
+    assert volume.voxels.dtype == np.float32
+    np.testing.assert_allclose(volume.voxels, hu, atol=0.126)
+
+
+class OneSlice:
+    """What `check_rescale` looks at."""
+
+    def __init__(self, slope: float, intercept: float) -> None:
+        self.slope, self.intercept = slope, intercept
+
+
+@settings(max_examples=300, deadline=None)
+@given(slope=st.floats(width=64), intercept=st.floats(width=64))
+def test_any_rescale_is_refused_or_gives_finite_hu(slope: float, intercept: float) -> None:
+    try:
+        pairs, unscaled = check_rescale([OneSlice(slope, intercept)] * 2)  # type: ignore[list-item]
+    except InputRefused as error:
+        assert error.code == "BadRescale"
+        return
+    assert not unscaled and 1e-3 <= slope <= 1e3
+    assert np.isfinite(pairs @ [65535.0, 1.0]).all()
+
+
+EVERY = slice(None)
+
+
+def test_padding_becomes_air_with_its_tag_and_without(tmp_path: Path) -> None:
+    hu = head()
+    hu[:, :6, :6] = -2000
+    named = series(hu, intercept=0, signed=True)
+    edit(EVERY, PixelPaddingValue=-2000)(named)
+    for folder, datasets, code in (("a", named, "Padding"), ("b", series(hu, intercept=-3000), "PaddingWithoutTag")):
+        volume, report = read_ct(save(tmp_path / folder, datasets))
+        assert code in codes(report)
+        np.testing.assert_array_equal(volume.voxels, np.where(hu == -2000, -1024, hu))
+
+
+def test_padding_value_within_the_head_is_ignored(tmp_path: Path) -> None:
+    datasets = series(head())
+    edit(EVERY, PixelPaddingValue=1024 + 900)(datasets)
+    volume, _ = read_ct(save(tmp_path / "scan", datasets))
+    np.testing.assert_array_equal(volume.voxels, head())
+
+
+def slice_of(bits: tuple[int, int, int] = (16, 16, 15), padding: tuple[float, float] | None = None) -> SimpleNamespace:
+    """What `apply_rescale` needs of a header."""
+    return SimpleNamespace(bits=bits, padding=padding, place=SimpleNamespace(syntax="1.2.840.10008.1.2.1"))
+
+
+@pytest.mark.parametrize(
+    ("slope", "intercept", "dtype"), [(1, -1024, "i2"), (2, -1024, "i2"), (0.5, -1024, "f4"), (1, -1000.5, "f4")]
+)
+def test_hu_is_stored_times_slope_plus_intercept(slope: float, intercept: float, dtype: str) -> None:
+    stored = np.arange(4096, dtype=np.uint16).reshape(64, 64)
+    hu, padding = apply_rescale(stored, slice_of(), slope, intercept)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(hu, stored * float(slope) + intercept)
+    assert hu.dtype == np.dtype(dtype) and padding is None
+
+
+def test_hu_beyond_sixteen_bits_are_kept_as_real_numbers() -> None:
+    stored = np.array([[0, 65535]], np.uint16)
+    hu, _ = apply_rescale(stored, slice_of(), 1.0, -1024.0)  # type: ignore[arg-type]
+    assert hu.dtype == np.float32
+    np.testing.assert_array_equal(hu, [[-1024, 64511]])
+
+
+@pytest.mark.parametrize("padding", [(63536, 63536), (63000, 64000)])
+def test_padding_is_found_in_stored_numbers_before_bits_are_cleared(padding: tuple[float, float]) -> None:
+    stored = np.array([[0, 1024, 63536]], np.uint16)  # the last has bits above the twelve that are image
+    hu, found = apply_rescale(stored, slice_of((16, 12, 11), padding), 1.0, -1024.0)  # type: ignore[arg-type]
+    np.testing.assert_array_equal(hu, [[-1024, 0, -1024]])
+    assert found is not None and found.tolist() == [[False, False, True]]
+
+
+def test_the_level_of_one_slice_is_held_against_the_others() -> None:
+    levels, pairs = np.full(20, -1000.0), np.tile([1.0, -1024.0], (20, 1))
+    assert check_levels(levels, pairs) == []
+    levels[7] = 24.0
+    assert check_levels(levels, pairs)[0].values == {"slices": [7]}  # its rescale is that of the others
+    pairs[7, 1] = 0.0
+    with pytest.raises(InputRefused) as caught:
+        check_levels(levels, pairs)
+    assert caught.value.code == "InconsistentRescale" and "Slice 7" in caught.value.message
+
+
+@pytest.mark.parametrize(("low", "signed"), [(-1000, False), (0, True), (-3000, True)])
+def test_numbers_without_rescale_are_hu_only_with_a_sign_and_air(low: int, signed: bool) -> None:
+    hu = np.array([low, 40, 900])
+    with pytest.raises(InputRefused) as caught:
+        check_unscaled(hu, signed)
+    assert caught.value.code == "MissingRescale"
+    assert check_unscaled(hu, signed, ("no_rescale",)).severity == "warning"

@@ -1,0 +1,104 @@
+"""What both kinds of image file share: the declared bytes are read, no more and no fewer."""
+
+import gzip
+import io
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from image_files import assert_head, file_refusal, patch_header, rewrite_header, stored_head, write_nifti, write_nrrd
+
+from cranio_nb.errors import InputRefused
+from cranio_nb.readers import read_ct
+from cranio_nb.readers.stored_image import MAX_VOXELS, check_rest, check_shape, read_exactly
+
+
+@pytest.mark.parametrize("suffix", ["nii", "nii.gz", "nrrd", "raw.nrrd"])
+@pytest.mark.parametrize("keep", [0.05, 0.3, 0.7, 0.98])
+def test_truncated_files_are_refused(suffix: str, keep: float, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    path = tmp_path / f"a.{suffix}"
+    if "nii" in suffix:
+        write_nifti(path, voxels, lps)
+    else:
+        write_nrrd(path, voxels, lps, encoding="raw" if "raw" in suffix else "gzip")
+    path.write_bytes(path.read_bytes()[: int(path.stat().st_size * keep)])
+    assert file_refusal(path).code == "CorruptFile"
+
+
+def test_giant_sizes_are_refused_before_they_are_allocated(tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    path = write_nifti(tmp_path / "a.nii", voxels, lps)
+    patch_header(path, dim=[3, 32767, 32767, 32767, 1, 1, 1, 1])
+    assert file_refusal(path).code == "LimitExceeded"
+    path = write_nrrd(tmp_path / "a.nrrd", voxels, lps)
+    rewrite_header(path, "sizes", "32767 32767 32767")
+    assert file_refusal(path).code == "LimitExceeded"
+
+
+def test_only_the_declared_bytes_are_inflated(tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    path = write_nifti(tmp_path / "a.nii", voxels, lps)
+    packer = zlib.compressobj(9, zlib.DEFLATED, zlib.MAX_WBITS | 16)
+    zeros = bytes(2**24)
+    packed = packer.compress(path.read_bytes()) + b"".join(packer.compress(zeros) for _ in range(16)) + packer.flush()
+    (tmp_path / "b.nii.gz").write_bytes(packed)
+    nrrd_path = write_nrrd(tmp_path / "a.nrrd", voxels, lps)
+    header, content = nrrd_path.read_bytes().split(b"\n\n", 1)
+    nrrd_path.write_bytes(header + b"\n\n" + gzip.compress(gzip.decompress(content) + zeros[:1000]))
+    for path in (tmp_path / "b.nii.gz", nrrd_path):
+        volume, report = read_ct(path)
+        assert_head(volume)
+        assert next(f for f in report.findings if f.code == "BytesLeft").severity == "warning"
+
+
+@pytest.mark.parametrize("suffix", ["nii.gz", "nrrd", "bz2.nrrd"])
+def test_every_damage_to_packed_voxels_is_found(suffix: str, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    path = tmp_path / f"a.{suffix}"
+    if "nii" in suffix:
+        write_nifti(path, voxels, lps)
+        start = 20
+    else:
+        write_nrrd(path, voxels, lps, encoding="bzip2" if "bz2" in suffix else "gzip")
+        start = path.read_bytes().index(b"\n\n") + 20
+    good, rng = path.read_bytes(), np.random.default_rng(2)
+    for at in rng.integers(start, len(good) - 8, 40):
+        bad = bytearray(good)
+        bad[at] ^= 1 << rng.integers(8)
+        path.write_bytes(bad)
+        try:
+            assert_head(read_ct(path)[0])  # a bit that packs nothing
+        except InputRefused as error:
+            assert error.code in {"CorruptFile", "UnsupportedFile"}
+
+
+class Drops(io.BytesIO):
+    """A stream that gives a few bytes at a time, as packed ones do."""
+
+    def read(self, count: int | None = -1) -> bytes:
+        return super().read(7 if count is None or count < 0 else min(count, 7))
+
+
+def test_bytes_are_read_in_whatever_parts_they_come() -> None:
+    content = bytes(range(256)) * 3
+    stream = Drops(content)
+    assert read_exactly(stream, 700) == content[:700]
+    assert check_rest(stream)[0].values == {"at_least": 68}
+    with pytest.raises(InputRefused, match="it holds 768 of 769 bytes"):
+        read_exactly(Drops(content), 769)
+
+
+@pytest.mark.parametrize("sizes", [[4, 5], [4, 5, 0], [4, 5, 6, 2]])
+def test_other_than_three_axes_are_refused(sizes: list[int]) -> None:
+    with pytest.raises(InputRefused) as caught:
+        check_shape(sizes)
+    assert caught.value.code == "BadShape"
+
+
+def test_the_limit_of_voxels_is_the_last_size_allowed() -> None:
+    assert check_shape([MAX_VOXELS, 1, 1]) == (MAX_VOXELS, 1, 1)
+    with pytest.raises(InputRefused) as caught:
+        check_shape([MAX_VOXELS + 1, 1, 1])
+    assert caught.value.code == "LimitExceeded"

@@ -1,0 +1,71 @@
+"""Pictures of the lessons: what is drawn lies where its mm say, in the colours that mean it."""
+
+import numpy as np
+import pytest
+
+from cranio_nb.drawing.palette import rgb_of
+from cranio_nb.mesh import Mesh
+from cranio_nb.teaching import pictures
+
+PX = 0.5
+
+
+def colours_of(ax):
+    """The colour that is on top at each pixel of the masks drawn, shape (R, C, 3), 0 to 255; white where none is."""
+    seen = 255 * np.ones((*ax.images[0].get_array().shape[:2], 3))
+    for image in ax.images:
+        rgba = np.asarray(image.get_array())
+        seen[rgba[..., 3] > 0] = 255 * rgba[rgba[..., 3] > 0][:, :3]
+    return seen.round().astype(int)
+
+
+def test_a_mask_lies_where_its_points_lie():
+    mask = np.zeros((20, 30), bool)
+    mask[8, 21] = True
+    _, (ax,) = pictures.axes()
+    pictures.show_mask(ax, mask, px=PX, colour="patch")
+    pictures.show_points(ax, np.argwhere(mask), px=PX, colour=pictures.BLUE)
+    left, right, bottom, top = ax.images[0].get_extent()
+    x, y = ax.lines[0].get_xydata()[0]
+    assert (left + (21 + 0.5) * PX, top + (8 + 0.5) * PX) == pytest.approx((x, y))
+    assert (right - left, bottom - top) == pytest.approx((30 * PX, 20 * PX))
+
+
+def test_errors_are_told_apart_by_colour():
+    bone, missing, patch = (np.zeros((10, 10), bool) for _ in range(3))
+    bone[0], missing[2:5], patch[4:7] = True, True, True
+    _, (ax,) = pictures.axes()
+    pictures.show_errors(ax, patch, missing, bone, px=PX, title="")
+    wanted = {0: "bone", 2: "missing", 4: "patch", 6: "extra"}
+    for row, meaning in wanted.items():
+        assert tuple(colours_of(ax)[row, 5]) == rgb_of(pictures.MASKS[meaning]), meaning
+
+
+def test_a_zoom_keeps_its_margin():
+    _, (ax,) = pictures.axes()
+    pictures.zoom(ax, [np.array([[10, 40], [30, 60]])], px=PX, margin=3)
+    assert ax.get_xlim() == (17, 33) and ax.get_ylim() == (18, 2)
+
+
+def test_lines_are_told_apart_without_colour():
+    assert len({style for _, style in pictures.LINES[:4]}) == 4
+    _, (ax,) = pictures.axes()
+    pictures.plot_lines(ax, [0, 1], {"a": [0, 1], "b": [1, 0]}, xlabel="x", ylabel="y")
+    assert [line.get_linestyle() for line in ax.lines] == ["-", "--"]
+
+
+def test_a_mesh_is_as_large_as_its_pixels_say():
+    square = Mesh(np.array([[0.0, 0, 0], [0, 20, 0], [0, 20, 10], [0, 0, 10]]), np.array([[0, 1, 2], [0, 2, 3]]))
+    _, (ax,) = pictures.axes()
+    pictures.show_meshes(ax, [(square, pictures.BLUE)], (1, 0, 0), title="", px=0.25, shaded=False)
+    seen = np.asarray(ax.images[0].get_array())
+    drawn = np.argwhere((seen < 0.98).any(axis=2))
+    assert np.ptp(drawn, axis=0) + 1 == pytest.approx([10 / 0.25, 20 / 0.25], abs=2)
+
+
+def test_a_curve_and_a_slice_of_hu_share_their_axes():
+    _, (ax,) = pictures.axes()
+    pictures.show_hu(ax, np.zeros((20, 30)), px=PX, centre=100, width=400)
+    pictures.show_curve(ax, [[0, 0], [19, 29]], px=PX, line=1)
+    assert ax.images[0].get_clim() == (-100, 300)
+    np.testing.assert_allclose(ax.lines[0].get_xydata(), [[0, 0], [14.5, 9.5]])

@@ -1,0 +1,38 @@
+"""What several panels draw: histograms count every voxel in range, colours follow the distance."""
+
+import numpy as np
+import pytest
+
+from cranio_nb.drawing.canvas import Canvas
+from cranio_nb.mesh import Mesh
+from cranio_nb.teaching.widgets import parts
+
+
+def test_a_histogram_counts_what_lies_in_its_range(ct):
+    edges, counts = parts.count_hu(ct.voxels)
+    low, high = parts.HU_RANGE
+    assert (edges[0], edges[-1]) == (low, high) and len(edges) == len(counts) + 1
+    assert counts.sum() == np.count_nonzero((ct.voxels >= low) & (ct.voxels <= high))
+
+
+def test_colours_stop_at_the_upper_end_and_unknown_is_white():
+    shown = parts.coloured(np.array([[0.0, 1.0, 2.0, 50.0, np.nan]], np.float32), 2.0)[0]
+    assert (shown[2] == shown[3]).all() and (shown[4] == 255).all()
+    brightness = shown[:3].sum(axis=1, dtype=int)
+    assert (np.diff(brightness) > 0).all()
+
+
+@pytest.mark.parametrize("towards", [(1, 0, 0), (0, 1, 0), (0.3, -0.5, 0.8)])
+def test_a_pixel_fits_a_ball_of_any_direction(towards):
+    rng = np.random.default_rng(0)
+    points = rng.normal(size=(5000, 3))
+    ball = Mesh(10 * points / np.linalg.norm(points, axis=1, keepdims=True), np.zeros((0, 3), int))
+    assert parts.pixel_to_fit(ball, towards, 100) == pytest.approx(0.2, rel=0.01)
+
+
+def test_the_scale_runs_from_its_lower_to_its_upper_end():
+    canvas = Canvas(220, 60)
+    parts.draw_colour_scale(canvas, (10, 5), 200, 3.0)
+    ends = canvas.array()[12, [12, 208]].astype(int)
+    wanted = parts.coloured(np.array([[0.0, 3.0]], np.float32), 3.0)[0]
+    assert np.abs(ends - wanted).max() < 12
