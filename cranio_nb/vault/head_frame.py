@@ -29,6 +29,9 @@ from .orientation import head_axes
 
 Array = NDArray[np.float64]
 
+SURE = 0.5
+"""Least confidence at which the axes are used."""
+
 _RAYS = 3000  # over the whole sphere: 3.7 degrees apart
 _LENGTHS = np.arange(10.0, 165.0, 1.0)  # mm along a ray
 _WALL_MM, _REACH_MM = 12.0, 80.0  # bone so far behind the first wall is deep bone
@@ -38,7 +41,6 @@ _FACE_DEG, _EDGE_DEG, _LONG_DEG = 26.0, 64.0, 95.0  # of the three, from straigh
 _BROW_WEIGHTS = (0.12, 0.67, -0.87, 3.24)  # Fisher's discriminant of front and rear on 48 heads; the least sum was 6
 _BROW_SURE = 4.0  # of the same sum
 _ASYMMETRY_MM = 1.5  # mean misfit up to which a midline is a midline
-_SURE = 0.5
 _END = np.cos(np.radians(30.0))  # rays so near to straight up or down
 _FORAMEN = 0.05  # share of them that leave through the foramen magnum
 _NO_FACE = "No face is in sight; the scan's own axes are used."
@@ -84,7 +86,7 @@ class HeadFrame:
         -------
         ndarray, shape (3, 3)
         """
-        return self.axes if self.confidence >= _SURE else self.grid_axes
+        return self.axes if self.confidence >= SURE else self.grid_axes
 
     @property
     def tilt_deg(self) -> float:
@@ -157,7 +159,7 @@ def find_head_frame(bone: Volume) -> HeadFrame:
     axes, spread, brow = _nod(measure_walls(local, centre), normal)
     agreement = [1.5 - spread / _SPREAD_DEG, 2 - asymmetry / _ASYMMETRY_MM, brow / _BROW_SURE]
     confidence = float(np.clip(agreement, 0, 1).min())
-    reason = _AGREE if confidence >= _SURE else _DISAGREE
+    reason = _AGREE if confidence >= SURE else _DISAGREE
     return HeadFrame(
         bone.to_world(local.to_voxel(centre)), axes @ grid_axes, grid_axes, confidence, asymmetry, spread, reason
     )
@@ -169,7 +171,7 @@ def _without_face(walls: Walls, centre: Array, grid_axes: Array) -> HeadFrame:
     if open_ends[1] > 0 or open_ends[0] < _FORAMEN:
         return HeadFrame(centre, grid_axes, grid_axes, 0.0, np.nan, np.nan, _NO_FACE)
     turned = grid_axes * np.array([[1.0], [-1.0], [-1.0]])
-    return HeadFrame(centre, turned, grid_axes, _SURE, np.nan, np.nan, _TURNED_OVER)
+    return HeadFrame(centre, turned, grid_axes, SURE, np.nan, np.nan, _TURNED_OVER)
 
 
 def _on_own_axes(bone: Volume, grid_axes: Array) -> Volume:

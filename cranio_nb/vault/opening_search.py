@@ -94,15 +94,19 @@ class OutermostBone:
         return float(np.nanmedian(self.radius[self.within(_SIDE_DEG)]))
 
 
-def find_openings(bone: Volume, *, ct: Volume | None = None, min_diameter_mm: float = 8.0) -> tuple[Opening, ...]:
+def find_openings(
+    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = 8.0
+) -> tuple[Opening, ...]:
     """Find every opening of the vault.
 
     Parameters
     ----------
     bone : Volume
         Bool mask of the skull.
-    ct : Volume, optional
-        HU on the same grid: shows bone that is too thin for the threshold.
+    scan : Volume, optional
+        HU on the same grid, which shows bone too thin for the threshold; a mask says no more than `bone`.
+    frame : HeadFrame, optional
+        How the head lies; found when not given.
     min_diameter_mm : float
         Width of the smallest opening; sutures, vessels and pits of thin bone are narrower.
 
@@ -126,7 +130,10 @@ def find_openings(bone: Volume, *, ct: Volume | None = None, min_diameter_mm: fl
     >>> len(find_openings(Volume(case.bone, case.affine)))
     3
     """
-    return tuple(one.opening for one in require_cut(survey_openings(bone, ct=ct, min_diameter_mm=min_diameter_mm)))
+    return tuple(
+        one.opening
+        for one in require_cut(survey_openings(bone, scan=scan, frame=frame, min_diameter_mm=min_diameter_mm))
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +154,7 @@ class JudgedOpening:
 
 
 def survey_openings(
-    bone: Volume, *, ct: Volume | None = None, min_diameter_mm: float = 8.0
+    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = 8.0
 ) -> tuple[JudgedOpening, ...]:
     """Find every opening, cut or natural, and judge it.
 
@@ -155,8 +162,10 @@ def survey_openings(
     ----------
     bone : Volume
         Bool mask of the skull.
-    ct : Volume, optional
-        HU on the same grid: shows bone below the threshold.
+    scan : Volume, optional
+        HU on the same grid, which shows bone too thin for the threshold; a mask says no more than `bone`.
+    frame : HeadFrame, optional
+        How the head lies; found when not given.
     min_diameter_mm : float
         Width of the smallest opening.
 
@@ -170,18 +179,20 @@ def survey_openings(
     InputRefused
         ``NoVault``.
     """
-    frame = find_head_frame(bone)
+    frame = frame or find_head_frame(bone)
     outermost = measure_outermost_bone(bone, frame.trusted_axes)
     groups = open_rays(outermost, min_diameter_mm)
     if not groups:
         return ()
     radius = _bridged_radius(outermost, groups)
-    material = Material.of(bone, ct, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
+    material = Material.of(bone, scan, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
     judged = []
     for rays in groups:
         signs = _signs(bone, outermost, rays, radius, material, frame)
         opening = Opening(_sheet(bone, outermost.grid, rays, radius), outermost.grid.centre)
-        judged.append(JudgedOpening(opening, judge(signs), bool(outermost.followed[rays].all())))
+        surface = outermost.grid.centre + outermost.grid.directions[rays] * radius[rays][:, None]
+        whole = outermost.followed[rays].all() and inside_grid(bone.to_voxel(surface), bone.shape).all()
+        judged.append(JudgedOpening(opening, judge(signs), bool(whole)))
     return tuple(judged)
 
 

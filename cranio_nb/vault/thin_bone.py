@@ -65,7 +65,7 @@ class Material:
         -------
         Material
         """
-        if ct is None:
+        if ct is None or ct.voxels.dtype == bool:
             return cls(bone, 0.0, 1.0, 0.0)
         inside = ct.at(centre + directions[::7] * _INSIDE_MM[:, None, None], outside=np.nan)
         part = np.s_[:: max(1, ct.shape[0] // 64), ::4, ::4]
