@@ -36,6 +36,7 @@ _SEEN = 0.75  # of the width of a small opening that is seen through, where rays
 _SAMPLE_MM = 0.75  # along a ray
 _EDGE_MM = 3.0  # a ray that leaves the image so far before its neighbours meet bone is not followed to the end
 _MIDDLE = 0.7  # of the distance from the rim to the innermost ray
+_ABOVE_MM, _BULGE = 2.0, 0.2  # by which bone may stand above the surface bridged from the rim; and for each mm to it
 _WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
 
 
@@ -307,7 +308,8 @@ def _signs(
     # bone in the middle of the opening, away from the blurred rim
     width = ndimage.distance_transform_edt(rays)
     middle = width >= _MIDDLE * width.max()
-    across = material.thickness(grid.centre, grid.directions[middle], radius[middle])
+    above_mm = _ABOVE_MM + _BULGE * width.max() * step_mm
+    across = material.thickness(grid.centre, grid.directions[middle], radius[middle], above_mm=above_mm)
     rim = ndimage.binary_dilation(rays, iterations=2) & np.isfinite(outermost.radius)
     # what stands along the rays of the rim, from the outer surface inwards
     depths = np.arange(-60.0, 1.5, 0.5)

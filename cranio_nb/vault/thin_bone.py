@@ -24,7 +24,7 @@ from ..volume import Volume
 
 Array = NDArray[np.float64]
 
-_DEPTHS = np.arange(-12.0, 10.0, 0.75)  # mm about the expected outer surface
+_BELOW_MM, _STEP_MM = 12.0, 0.75  # the expected outer surface, and between samples
 _MARGIN_HU = 100.0  # above the medium up to which soft tissue and noise count for nothing
 _INSIDE_MM = np.array([5.0, 15.0, 25.0, 35.0])  # from the head's centre, where the medium is measured
 
@@ -71,7 +71,7 @@ class Material:
         part = np.s_[:: max(1, ct.shape[0] // 64), ::4, ::4]
         return cls(ct, float(np.nanmedian(inside)), float(np.median(ct.voxels[part][bone.voxels[part]])), _MARGIN_HU)
 
-    def thickness(self, centre: Array, directions: Array, radius: Array) -> Array:
+    def thickness(self, centre: Array, directions: Array, radius: Array, *, above_mm: float) -> Array:
         """Bone across each ray about a radius.
 
         Parameters
@@ -82,13 +82,16 @@ class Material:
             Unit vectors, world.
         radius : ndarray, shape (n,)
             Where the outer surface is expected, mm.
+        above_mm : float
+            How far above it bone may lie: what is fixed to the scalp lies higher.
 
         Returns
         -------
         ndarray, shape (n,)
             mm.
         """
-        points = centre + directions[:, None] * (radius[:, None] + _DEPTHS)[..., None]
+        depths = np.arange(-_BELOW_MM, above_mm, _STEP_MM)
+        points = centre + directions[:, None] * (radius[:, None] + depths)[..., None]
         index = self.volume.to_voxel(points)
         # only the box around the rays is turned into floats
         box = box_around(index.reshape(-1, 3), self.volume.shape, margin=1)
@@ -100,6 +103,7 @@ class Material:
             mode="constant",
             cval=self.medium,
         )
-        excess = values - self.medium
-        step = _DEPTHS[1] - _DEPTHS[0]
-        return np.asarray(np.where(excess > self.margin, excess, 0.0).sum(axis=1) * step / (self.bone - self.medium))
+        excess = np.minimum(values, self.bone) - self.medium  # metal counts no more than bone
+        return np.asarray(
+            np.where(excess > self.margin, excess, 0.0).sum(axis=1) * _STEP_MM / (self.bone - self.medium)
+        )
