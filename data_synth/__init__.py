@@ -6,12 +6,14 @@ It shares no code with the package it tests. `python -m data_synth --help` write
 from .case import Case
 from .cut import cut_case
 from .defect import DEFECTS, DefectSpec
+from .face import AROUND, Landmarks, Pose, face_case
 from .head import HeadShape
 from .phantom import SIZES, leaning, phantom_case, scan
 from .series import ORIENTATIONS, SYNTAXES, write_dicom
 from .truth import Gap, SliceTruth
 
 __all__ = [
+    "AROUND",
     "DEFECTS",
     "ORIENTATIONS",
     "SIZES",
@@ -20,8 +22,11 @@ __all__ = [
     "DefectSpec",
     "Gap",
     "HeadShape",
+    "Landmarks",
+    "Pose",
     "SliceTruth",
     "cut_case",
+    "face_case",
     "leaning",
     "phantom_case",
     "scan",

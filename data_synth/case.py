@@ -6,13 +6,16 @@ Frames: voxel (plane, row, col); world mm, DICOM LPS.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .head import HeadShape
 from .truth import SliceTruth, gaps_in_slice
+
+if TYPE_CHECKING:
+    from .face.landmarks import Landmarks
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +41,8 @@ class Case:
         What the case was made with, JSON-able.
     head : HeadShape or None
         Closed-form surfaces and cutters of a phantom; None for a cut case.
+    landmarks : Landmarks or None
+        How a head with a face lies in the world; None for others.
     """
 
     hu: NDArray[np.int16] | None
@@ -48,6 +53,7 @@ class Case:
     seed: int
     parameters: dict[str, Any] = field(default_factory=dict)
     head: HeadShape | None = None
+    landmarks: Landmarks | None = None
 
     @property
     def complete(self) -> NDArray[np.bool_]:

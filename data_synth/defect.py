@@ -163,7 +163,7 @@ class Cutter:
 
 
 def plan_cutters(
-    defect: str,
+    defect: str | tuple[DefectSpec, ...],
     rng: np.random.Generator,
     radius: Callable[[Array], float],
     *,
@@ -173,8 +173,8 @@ def plan_cutters(
 
     Parameters
     ----------
-    defect : str
-        A key of `DEFECTS`.
+    defect : str or tuple of DefectSpec
+        A key of `DEFECTS`, or the holes themselves.
     rng : Generator
         Chooses side, place, size, turn and rim.
     radius : callable
@@ -192,9 +192,10 @@ def plan_cutters(
     ValueError
         If the defect is unknown, or too wide for the skull.
     """
-    if defect not in DEFECTS:
+    if isinstance(defect, str) and defect not in DEFECTS:
         raise ValueError(f"There is no defect named {defect!r}; choose one of {', '.join(DEFECTS)}.")
-    return tuple(_cutter(spec, rng, radius, diameter) for spec in DEFECTS[defect])
+    specs = DEFECTS[defect] if isinstance(defect, str) else defect
+    return tuple(_cutter(spec, rng, radius, diameter) for spec in specs)
 
 
 def _cutter(
