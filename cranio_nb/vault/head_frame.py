@@ -40,6 +40,7 @@ _FACE_MM = 0.1  # mean deep bone, as a vector, below which no face is in sight
 _FACE_DEG, _EDGE_DEG, _LONG_DEG = 26.0, 64.0, 95.0  # of the three, from straight down to the front, adult skulls
 _BROW_WEIGHTS = (0.12, 0.67, -0.87, 3.24)  # Fisher's discriminant of front and rear on 48 heads; the least sum was 6
 _BROW_SURE = 4.0  # of the same sum
+_HEAD_MM, _FARTHEST_MM, _POINTS = 105.0, 12.0, 1500  # about the centre; distance that counts at most; compared
 _ASYMMETRY_MM = 1.5  # mean misfit up to which a midline is a midline
 _END = np.cos(np.radians(30.0))  # rays so near to straight up or down
 _FORAMEN = 0.05  # share of them that leave through the foramen magnum
@@ -228,45 +229,63 @@ def measure_walls(bone: Volume, centre: Array) -> Walls:
     return Walls(directions, first, last, np.minimum(deep, _MOST_MM))
 
 
+@dataclass(frozen=True, eq=False)
+class _Mirror:
+    """Points of a head about its centre (n, 3), and how far each place is from bone."""
+
+    points: Array
+    start: Array
+    field: Volume
+
+    @classmethod
+    def of(cls, coarse: Volume, centre: Array) -> _Mirror:
+        points = coarse.to_world(np.argwhere(coarse.voxels)) - centre
+        points = points[np.linalg.norm(points, axis=1) < _HEAD_MM]
+        apart = ndimage.distance_transform_edt(~coarse.voxels, sampling=coarse.spacing)
+        field = coarse.with_voxels(np.minimum(apart, _FARTHEST_MM))
+        return cls(points[:: max(1, len(points) // _POINTS)], coarse.to_voxel(centre), field)
+
+    def misfit(self, normal: Array, shift: float) -> float:
+        """Mean distance in mm of the mirrored points from bone."""
+        mirrored = self.points - 2 * (self.points @ normal - shift)[:, None] * normal
+        away = self.field.at_index(self.start + self.field.steps(mirrored), outside=np.nan)
+        seen = np.isfinite(away)
+        return float(away[seen].mean()) if seen.mean() > 0.5 else _FARTHEST_MM
+
+
 def _midline(coarse: Volume, centre: Array, face: Array) -> tuple[Array, float, float]:
     """Normal of the plane of symmetry, its signed distance from the centre and the mean misfit, mm."""
-    points = coarse.to_world(np.argwhere(coarse.voxels)) - centre
-    points = points[np.linalg.norm(points, axis=1) < 105.0]
-    points = points[:: max(1, len(points) // 1500)]
-    start = coarse.to_voxel(centre)
-    apart = ndimage.distance_transform_edt(~coarse.voxels, sampling=coarse.spacing)
-    field = Volume(np.minimum(apart, 12.0), coarse.affine)
-
-    def misfit(normal: Array, shift: float) -> float:
-        mirrored = points - 2 * (points @ normal - shift)[:, None] * normal
-        away = field.at_index(start + field.steps(mirrored), outside=np.nan)
-        seen = np.isfinite(away)
-        return float(away[seen].mean()) if seen.mean() > 0.5 else 12.0
-
-    forward = face / np.linalg.norm(face)
-    across = np.linalg.svd(forward[None])[2][1:]
-    best = (np.inf, across[0], 0.0)
-    for turn in np.radians(np.arange(0, 180, 6)):
-        for lean in np.radians([-20, -10, 0, 10, 20]):
-            flat = np.cos(turn) * across[0] + np.sin(turn) * across[1]
-            normal = np.cos(lean) * flat + np.sin(lean) * forward
-            for shift in (-8.0, 0.0, 8.0):
-                best = min(best, (misfit(normal, shift), normal, shift), key=lambda entry: entry[0])
-    _, normal, shift = best
+    mirror = _Mirror.of(coarse, centre)
+    _, normal, shift = min(
+        ((mirror.misfit(n, s), n, s) for n in _normals_beside(face) for s in (-8.0, 0.0, 8.0)),
+        key=lambda plane: plane[0],
+    )
     sides = np.linalg.svd(normal[None])[2][1:]
 
     def moved(x: Array) -> Array:
-        turned = normal + x[0] / 50 * sides[0] + x[1] / 50 * sides[1]
+        turned = normal + x[0] / 50 * sides[0] + x[1] / 50 * sides[1]  # mm at 50 mm
         return np.asarray(turned / np.linalg.norm(turned))
 
     simplex = np.array([[0, 0, shift], [4, 0, shift], [0, 4, shift], [0, 0, shift + 3]], float)
     found = optimize.minimize(
-        lambda x: misfit(moved(x), x[2]),
+        lambda x: mirror.misfit(moved(x), x[2]),
         simplex[0],
         method="Nelder-Mead",
         options={"initial_simplex": simplex, "xatol": 0.2, "fatol": 0.005, "maxiter": 80},
     )
     return moved(found.x), float(found.x[2]), float(found.fun)
+
+
+def _normals_beside(face: Array) -> list[Array]:
+    """Unit vectors within 20 degrees of right angles to the face, 6 to 10 degrees apart."""
+    forward = face / np.linalg.norm(face)
+    across = np.linalg.svd(forward[None])[2][1:]
+    turns, leans = np.radians(np.arange(0, 180, 6)), np.radians([-20, -10, 0, 10, 20])
+    return [
+        np.cos(lean) * (np.cos(turn) * across[0] + np.sin(turn) * across[1]) + np.sin(lean) * forward
+        for turn in turns
+        for lean in leans
+    ]
 
 
 def _nod(walls: Walls, normal: Array) -> tuple[Array, float, float]:
