@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -36,7 +37,9 @@ def inspect(
     from ..evaluation.opening_size import measure_opening
     from ..output.design_folder import load_record
     from ..stages.segmentation import bone_of
+    from ..vault.head_frame import find_head_frame
     from ..vault.opening_search import find_openings
+    from ..vault.remarks import remarks
     from .console import print_json, print_load, print_openings, progress_bar
 
     check_reads(scan=scan)
@@ -48,7 +51,10 @@ def inspect(
     problem: CranioError | None = None
     sizes: list[OpeningSize] = []
     try:
-        sizes = [measure_opening(one) for one in find_openings(bone_of(volume, threshold))]
+        bone = bone_of(volume, threshold)
+        frame = find_head_frame(bone)
+        load = replace(load, findings=(*load.findings, *remarks(bone, frame)))
+        sizes = [measure_opening(one) for one in find_openings(bone, scan=volume, frame=frame)]
     except CranioError as error:
         problem = error
     if as_json:

@@ -11,7 +11,9 @@ from ..errors import InputRefused, NoOpening
 from ..opening import Opening
 from ..readers import LoadReport, read_ct
 from ..stages.segmentation import bone_of, threshold_of
+from ..vault.head_frame import find_head_frame
 from ..vault.opening_search import find_openings
+from ..vault.remarks import remarks
 from ..volume import Volume, same_grid
 
 Progress = Callable[[str, float], None]
@@ -110,7 +112,10 @@ def prepare(
     clock.lap("read")
     report("bone", 0.3)
     bone = bone_of(scan, threshold)
-    openings = find_openings(bone) if planes is None else within_planes(find_openings(bone), planes)
+    frame = find_head_frame(bone)
+    load = replace(load, findings=(*load.findings, *remarks(bone, frame)))
+    found = find_openings(bone, scan=scan, frame=frame)
+    openings = found if planes is None else within_planes(found, planes)
     for opening in openings:
         check_margin(opening.sheet, "The opening of the skull")
     clock.lap("bone and openings")
