@@ -9,7 +9,7 @@ import click
 
 from ..errors import InputRefused, NoOpening
 from ..methods.catalogue import METHODS
-from .options import PATH, allow, check_reads, check_writes, debug, mask, threshold, truth
+from .options import PATH, allow, check_reads, check_writes, debug, label, mask, threshold, truth
 
 if TYPE_CHECKING:
     from ..pipeline.compare import Comparison, Measure
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated.  [default: all]",
 )
 @mask
+@label
 @threshold
 @allow
 @debug
@@ -36,6 +37,7 @@ def compare(
     out: Path | None,
     methods: tuple[str, ...],
     mask: bool,
+    label: int | None,
     threshold: float | None,
     allow: tuple[str, ...],
 ) -> None:
@@ -64,7 +66,9 @@ def compare(
     if out is not None:
         check_writes(out, FILES, {"scan": scan, "truth": truth})
     with progress_bar() as progress:
-        case = prepare(scan, mask=mask or None, threshold=threshold, truth=truth, allow=allow, progress=progress)
+        case = prepare(
+            scan, mask=mask or None, label=label, threshold=threshold, truth=truth, allow=allow, progress=progress
+        )
         found = run_all(case, asked, progress=lambda name, done: progress(name, 0.4 + 0.5 * done))
         if out is not None:
             progress("report", 0.92)

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from .method_name import MethodName, check_asked
-from .options import PATH, allow, check_writes, debug, mask, parse_planes, read_params, threshold, truth
+from .options import PATH, allow, check_writes, debug, label, mask, parse_planes, read_params, threshold, truth
 
 
 @click.command()
@@ -20,6 +20,7 @@ from .options import PATH, allow, check_writes, debug, mask, parse_planes, read_
 @click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
 @truth
 @mask
+@label
 @threshold
 @allow
 @debug
@@ -33,6 +34,7 @@ def design(
     planes: str | None,
     truth: Path | None,
     mask: bool,
+    label: int | None,
     threshold: float | None,
     allow: tuple[str, ...],
 ) -> None:
@@ -66,6 +68,7 @@ def design(
             preset=preset,
             options=options,
             mask=mask or None,
+            label=label,
             threshold=threshold,
             planes=between,
             truth=truth,

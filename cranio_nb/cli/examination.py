@@ -14,7 +14,7 @@ from importlib.metadata import PackageNotFoundError, version
 from ..drawing.front_end import proxy
 
 _NEEDED = tuple(
-    "numpy scipy scikit-image pydicom pyjpegls pylibjpeg-openjpeg pylibjpeg-libjpeg nibabel pynrrd trimesh networkx "
+    "numpy scipy scikit-image pydicom pyjpegls pylibjpeg-openjpeg imagecodecs nibabel pynrrd trimesh networkx "
     "lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
 )
 _OPTIONAL = {

@@ -75,6 +75,9 @@ allow = click.option(
 mask = click.option(
     "--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it."
 )
+label = click.option(
+    "--label", type=int, metavar="N", help="Take the voxels of this value as bone: the skull in a map of labels."
+)
 threshold = click.option(
     "--threshold", type=float, metavar="HU", callback=_check_threshold, help="Lowest HU of bone.  [default: 400]"
 )

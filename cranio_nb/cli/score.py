@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..readers import read_ct
-from .options import PATH, allow, as_json, check_reads, debug, mask, threshold
+from .options import PATH, allow, as_json, check_reads, debug, label, mask, threshold
 
 _UNITS = {"hd95": "mm", "assd": "mm", "rmse": "mm", "overlap": "voxels"}
 
@@ -18,6 +18,7 @@ _UNITS = {"hd95": "mm", "assd": "mm", "rmse": "mm", "overlap": "voxels"}
 @click.argument("truth", type=PATH)
 @click.option("--skull", type=PATH, required=True, help="Skull with the hole: bone mask, or a CT.")
 @mask
+@label
 @threshold
 @allow
 @as_json
@@ -27,13 +28,15 @@ def score(
     truth: Path,
     skull: Path,
     mask: bool,
+    label: int | None,
     threshold: float | None,
     allow: tuple[str, ...],
     as_json: bool,
 ) -> None:
     """Measure a patch against the true one; all three on one grid.
 
-    The skull's bone is found as `cranio-nb design` finds it: give --mask, --threshold and --allow as there.
+    The skull's bone is found as `cranio-nb design` finds it: give --mask, --label, --threshold and --allow as
+    there.
 
     \b
     Examples:
@@ -46,7 +49,7 @@ def score(
 
     check_reads(patch=patch, TRUTH=truth, skull=skull)
     (made, _), (true, _) = read_ct(patch, mask=True), read_ct(truth, mask=True)
-    scan, _ = read_ct(skull, mask=mask or None, allow=allow)
+    scan, _ = read_ct(skull, mask=mask or None, label=label, allow=allow)
     # the same bone that a design of this scan starts from
     found = dataclasses.asdict(scores.score(made, true, bone_of(scan, threshold)))
     if as_json:

@@ -251,8 +251,8 @@ def _symmetry(bone: Volume, opening: Opening) -> tuple[SymmetryPlane | None, dic
     except InputRefused as refused:
         return None, {"unused": refused.message}
     # a bad plane would press the wrong curvature onto the hole
-    if plane.residual > _LOPSIDED:
-        return None, plane.record() | {"unused": f"The mirrored skull lies {plane.residual:.1f} mm off the skull."}
+    if plane.residual_mm > _LOPSIDED:
+        return None, plane.record() | {"unused": f"The mirrored skull lies {plane.residual_mm:.1f} mm off the skull."}
     return plane, plane.record()
 
 
@@ -266,14 +266,14 @@ def _plate(
     expected = None if learned is None else _expected(bone, radius_map, learned)
     # a coarser grid of nodes for the plate; its hole keeps every node that any missing ray touches
     nodes = max(1, round(_NODES / radius_map.step_mm))
-    hole = thinned(radius_map.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
+    hole = thin_map(radius_map.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
     rim = ndimage.distance_transform_edt(~radius_map.hole) * radius_map.step_mm <= _RIM
     radii = []
     # each surface by itself
     for i, radius in enumerate((radius_map.outer, radius_map.inner)):
         known = np.where(rim, np.nan, radius)
-        like, likely = (None if maps is None else thinned(maps[i], nodes) for maps in (mirrored, expected))
-        plate = bend(thinned(known, nodes), hole, radius_map.step_mm * nodes, like=like, expected=likely, **lengths)
+        like, likely = (None if maps is None else thin_map(maps[i], nodes) for maps in (mirrored, expected))
+        plate = bend(thin_map(known, nodes), hole, radius_map.step_mm * nodes, like=like, expected=likely, **lengths)
         radii.append(np.where(radius_map.hole, _refined(plate, nodes, radius_map.hole.shape), np.nan))
     return Plate(radius_map, radii[0], radii[1], mirrored, expected)
 
@@ -307,7 +307,7 @@ def _solid(plate: Plate, opening: Opening, bone: Volume) -> NDArray[np.bool_]:
     return voxel_pieces.keep_main_piece(between, opening.sheet.voxels)
 
 
-def thinned(values: Array, nodes: int) -> Array:
+def thin_map(values: Array, nodes: int) -> Array:
     """Every n-th value about a map's middle, as the mean of its known neighbours, so that the scan's stairs even out.
 
     Parameters
@@ -333,7 +333,7 @@ def thinned(values: Array, nodes: int) -> Array:
 
 
 def _refined(values: Array, nodes: int, shape: tuple[int, ...]) -> Array:
-    """The map that `thinned` would have made these values from: cubic between the nodes."""
+    """The map that `thin_map` would have made these values from: cubic between the nodes."""
     start = (shape[0] // 2) % nodes
     return ndimage.map_coordinates(
         filled_from_nearest(values), (np.indices(shape) - start) / nodes, order=3, mode="nearest"

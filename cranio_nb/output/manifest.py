@@ -11,7 +11,7 @@ import json
 import os
 from collections.abc import Collection
 from importlib.metadata import version
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from .files import write_json
 
@@ -94,23 +94,19 @@ def is_ours(folder: Path, name: str) -> bool:
         return False
     if name == MANIFEST:
         return bool(written)
-    if path.is_file():
-        return written.get(name) == _digest(path)
-    found = _digests(path, f"{name}/")
+    found = _digests(path, name)
     return bool(found) and all(written.get(inner) == digest for inner, digest in found.items())
 
 
-def _digests(folder: Path, prefix: str = "") -> dict[str, str]:
-    """Digest of each file below a folder, by its name; a link or a special file has an empty one."""
-    found = {}
-    for home, _, names in os.walk(folder):
-        for path in sorted(Path(home) / name for name in names):
-            plain = path.is_file() and not path.is_symlink()
-            found[prefix + path.relative_to(folder).as_posix()] = _digest(path) if plain else ""
-    return dict(sorted(found.items()))
-
-
-def _digest(path: Path) -> str:
-    """SHA-256 of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+def _digests(path: Path, name: str = "") -> dict[str, str]:
+    """Digest of a file by its name, or of each file below a folder; a link or a special file has an empty one."""
+    files = {name: path} if path.is_file() else {}
+    for home, _, names in os.walk(path):  # nothing for a file
+        inner = [Path(home) / one for one in names]
+        files |= {PurePosixPath(name, one.relative_to(path).as_posix()).as_posix(): one for one in inner}
+    found = dict.fromkeys(sorted(files), "")
+    for one in found:
+        if files[one].is_file() and not files[one].is_symlink():
+            with files[one].open("rb") as file:
+                found[one] = hashlib.file_digest(file, "sha256").hexdigest()
+    return found

@@ -11,7 +11,9 @@ from ..errors import InputRefused, NoOpening
 from ..opening import Opening
 from ..readers import LoadReport, read_ct
 from ..stages.segmentation import bone_of, threshold_of
+from ..vault.head_frame import find_head_frame
 from ..vault.opening_search import find_openings
+from ..vault.remarks import remarks
 from ..volume import Volume, same_grid
 
 Progress = Callable[[str, float], None]
@@ -48,6 +50,7 @@ def prepare(
     path: str | PathLike[str],
     *,
     mask: bool | None = None,
+    label: int | None = None,
     threshold: float | None = None,
     planes: tuple[int, int] | None = None,
     truth: str | PathLike[str] | None = None,
@@ -62,6 +65,8 @@ def prepare(
         DICOM folder, NIfTI or NRRD file with a CT in HU or a bone mask.
     mask : bool, optional
         As for `read_ct`: True takes every nonzero voxel as bone. By default data of 0 and 1 are a mask.
+    label : int, optional
+        As for `read_ct`: the voxels of this value are bone.
     threshold : float, optional
         Lowest HU of bone; `segmentation.BONE_HU` when not given.
     planes : tuple of int, optional
@@ -98,14 +103,19 @@ def prepare(
     report = progress or (lambda step, done: None)
     clock = Clock()
     report("reading", 0.0)
-    scan, load = read_ct(path, mask=mask, allow=allow, progress=lambda i, n: report("reading", 0.3 * i / n))
+    scan, load = read_ct(
+        path, mask=mask, label=label, allow=allow, progress=lambda i, n: report("reading", 0.3 * i / n)
+    )
     known = None if truth is None else read_ct(truth, mask=True)[0]
     if known is not None:
         check_truth_mask(known, scan)
     clock.lap("read")
     report("bone", 0.3)
     bone = bone_of(scan, threshold)
-    openings = find_openings(bone) if planes is None else within_planes(find_openings(bone), planes)
+    frame = find_head_frame(bone)
+    load = replace(load, findings=(*load.findings, *remarks(bone, frame)))
+    found = find_openings(bone, scan=scan, frame=frame)
+    openings = found if planes is None else within_planes(found, planes)
     for opening in openings:
         check_margin(opening.sheet, "The opening of the skull")
     clock.lap("bone and openings")

@@ -70,6 +70,7 @@ def run_design(
     preset: str = "default",
     options: dict[str, Any] | None = None,
     mask: bool | None = None,
+    label: int | None = None,
     threshold: float | None = None,
     planes: tuple[int, int] | None = None,
     truth: str | PathLike[str] | None = None,
@@ -90,6 +91,8 @@ def run_design(
         Options of the method that differ from the preset.
     mask : bool, optional
         As for `read_ct`: True takes every nonzero voxel as bone. By default data of 0 and 1 are a mask.
+    label : int, optional
+        As for `read_ct`: takes the voxels of this value as bone.
     threshold : float, optional
         Lowest HU of bone; `segmentation.BONE_HU` when not given.
     planes : tuple of int, optional
@@ -126,7 +129,9 @@ def run_design(
     options = dict(options or {})
     check_request(method, preset, options)
     report = progress or (lambda step, done: None)
-    case = prepare(path, mask=mask, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=report)
+    case = prepare(
+        path, mask=mask, label=label, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=report
+    )
     clock = Clock(case.seconds)
     made = design(
         case.bone,

@@ -102,7 +102,7 @@ def centre_frames(frames: list[HeadFrame], skulls: list[SkullPoints]) -> list[He
     mean = (mean + mean * np.outer(MIRROR, MIRROR)) / 2
     # that mean becomes the identity: the head frame neither turns, grows nor drifts over the rounds
     turned, shift = np.linalg.inv(mean), place * [0.0, 1.0, 1.0]
-    return [HeadFrame(f.matrix @ turned, f.origin - f.matrix @ turned @ shift, f.misfit) for f in frames]
+    return [HeadFrame(f.matrix @ turned, f.origin - f.matrix @ turned @ shift, f.misfit_mm) for f in frames]
 
 
 @dataclass(frozen=True, eq=False)

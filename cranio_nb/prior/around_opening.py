@@ -77,8 +77,8 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     """
     # rays of different skulls can be compared only in the frame of the mean head
     frame = align(sample_surface(bone), prior.mean)
-    if frame.misfit > _MISFIT_MM:
-        message = f"The skull lies {frame.misfit:.1f} mm off the prior's mean head; {_MISFIT_MM:g} mm is the most."
+    if frame.misfit_mm > _MISFIT_MM:
+        message = f"The skull lies {frame.misfit_mm:.1f} mm off the prior's mean head; {_MISFIT_MM:g} mm is the most."
         raise InputRefused("PriorDoesNotFit", message, "Design without the prior, or learn one from such skulls.")
     # what the skull shows, without its holes and their rims
     middle = prior.samples.mean(axis=0)

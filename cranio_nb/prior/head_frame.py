@@ -27,7 +27,7 @@ class HeadFrame:
     matrix : ndarray, shape (3, 3)
     origin : ndarray, shape (3,)
         World mm of the head frame's origin, inside the cranial cavity.
-    misfit : float
+    misfit_mm : float
         70 % of the skull's points lie closer to the mean head than this, mm.
 
     Examples
@@ -38,7 +38,7 @@ class HeadFrame:
 
     matrix: Array
     origin: Array
-    misfit: float = 0.0
+    misfit_mm: float = 0.0
 
     def stretch(self, directions: Array) -> Array:
         """How long a mm of the head frame is in the world.

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
+from ..vault.opening_search import survey_openings
 from ..volume import Volume
 from .alignment import align, centre_frames, mean_head
 from .head_frame import HeadFrame, even_directions
@@ -64,6 +65,9 @@ def learn_prior(bones: Iterable[Volume], progress: Callable[[str, float], None] 
     return Prior(mean, _completed(np.array(radii)).astype(np.float32))
 
 
+_WHOLE = "A prior is learned from scans of whole, closed skulls."
+
+
 def check_intact(bone: Volume) -> None:
     """Refuse what is not the skull of a whole head.
 
@@ -80,7 +84,10 @@ def check_intact(bone: Volume) -> None:
     covered = vault_coverage(bone)
     if covered < _CLOSED:
         message = f"{100 * (1 - covered):.0f} % of the vault is open or outside the image."
-        raise InputRefused("NotIntact", message, "A prior is learned from scans of whole, closed skulls.")
+        raise InputRefused("NotIntact", message, _WHOLE)
+    n_cut = sum(one.verdict.designed for one in survey_openings(bone))
+    if n_cut:
+        raise InputRefused("NotIntact", f"The vault has {n_cut} openings that were cut.", _WHOLE)
 
 
 @dataclass(frozen=True, eq=False)

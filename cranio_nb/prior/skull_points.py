@@ -13,7 +13,8 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..vault.orientation import head_axes, head_centre
+from ..vault.head_frame import head_or_grid_axes
+from ..vault.orientation import head_centre
 from ..volume import Volume
 from .head_frame import HeadFrame, even_directions
 
@@ -86,7 +87,8 @@ def sample_surface(bone: Volume) -> SkullPoints:
     InputRefused
         ``NoVault`` when the mask holds no skull vault.
     """
-    centre, axes, directions = head_centre(bone), head_axes(bone).T, even_directions(4)
+    own = head_or_grid_axes(bone)
+    centre, axes, directions = head_centre(bone, own), own.T, even_directions(4)
     radii = measure_outline(bone, HeadFrame(axes, centre), directions)
     outer, inner = ((directions * radius[:, None])[np.isfinite(radius)] for radius in radii)
     return SkullPoints(outer=outer, inner=inner, centre=centre, axes=axes)

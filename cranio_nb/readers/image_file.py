@@ -14,23 +14,28 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from ..grid import canonical_order
 from ..volume import Volume
-from .hu_checks import AIR_HU, check_finite, check_hu, clear_padding, is_mask
+from .hu_checks import AIR_HU, as_mask, check_finite, check_hu, clear_padding
 from .load_report import Finding, LoadReport
 from .regrid import slide_slices
 from .stored_image import Image
 
 _SPACING_RANGE_MM = (0.1, 10.0)  # mm
+_MAX_STEP_MM = 5.02  # mm between planes, as for DICOM
+_MIN_PLANES = 8  # along each axis, as for DICOM
+_FARTHEST_MM = 1e4  # mm: no scanner is so large, and single precision still tells 0.001 mm apart there
 _CORNER_TOL_MM = 0.05  # mm
 
 
-def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] = ()) -> tuple[Volume, LoadReport]:
+def read_image(
+    path: Path, *, mask: bool | None = None, label: int | None = None, allow: Collection[str] = ()
+) -> tuple[Volume, LoadReport]:
     """Read one NIfTI or NRRD file.
 
     Parameters
     ----------
     path : Path
         A .nii, .nii.gz or .nrrd file, known by its first bytes.
-    mask, allow
+    mask, label, allow
         As for `cranio_nb.readers.read_ct`.
 
     Returns
@@ -49,7 +54,7 @@ def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] =
     NIfTI counts x to the right and y to the front; world here is LPS:
 
     >>> import nibabel
-    >>> mask = np.zeros((6, 7, 8), np.uint8)
+    >>> mask = np.zeros((8, 9, 10), np.uint8)
     >>> mask[1, 2, 3] = 1
     >>> nibabel.save(nibabel.Nifti1Image(mask, np.eye(4)), "mask.nii.gz")
     >>> bone, report = read_image(Path("mask.nii.gz"))
@@ -69,7 +74,7 @@ def read_image(path: Path, *, mask: bool | None = None, allow: Collection[str] =
             raise InputRefused("UnsupportedFile", message, "Give a DICOM folder, or a .nii, .nii.gz or .nrrd file.")
         image = read(stream, allow)
     check_grid(image)
-    voxels, findings = _values(image, mask, allow)
+    voxels, findings = _values(image, mask, label, allow)
     return _finish(image, voxels, [*image.findings, *findings])
 
 
@@ -83,7 +88,7 @@ def check_grid(image: Image) -> None:
     Raises
     ------
     InputRefused
-        ``BadGeometry``; ``BadShape`` for a single plane.
+        ``BadGeometry``; ``BadShape`` for a single plane; ``TooFewSlices``, ``SlicesTooFarApart``.
     """
     matrix, remedy = image.affine[:3, :3], "Convert the file again from its source."
     if not np.isfinite(image.affine).all() or abs(np.linalg.det(matrix)) < 1e-9:
@@ -93,17 +98,32 @@ def check_grid(image: Image) -> None:
         listed = " x ".join(f"{s:.4g}" for s in spacing)
         message = f"Voxels measure {listed} mm; {low:g} to {high:g} mm are wanted."
         raise InputRefused("BadGeometry", message, f"{remedy[:-1]}, and check its units.")
+    if spacing.max() > _MAX_STEP_MM:
+        message = f"Planes are {spacing.max():.2f} mm apart; at most 5 mm are read."
+        raise InputRefused("SlicesTooFarApart", message, "A head CT in thin slices, up to 2 mm apart, is best.")
     if min(image.raw.shape) < 2:
         raise InputRefused("BadShape", f"The image has the shape {image.raw.shape}; a volume is wanted.", remedy)
+    if min(image.raw.shape) < _MIN_PLANES:
+        message = (
+            f"The image has the shape {image.raw.shape}; at least {_MIN_PLANES} planes are wanted along each axis."
+        )
+        raise InputRefused("TooFewSlices", message, "Give a volume with all slices of a head.")
+    far = np.abs(image.affine[:3, 3]).max()
+    if far > _FARTHEST_MM:
+        message = f"The image's origin is {far:.3g} mm away; at most {_FARTHEST_MM:g} mm are read."
+        raise InputRefused("BadGeometry", message, remedy)
 
 
-def _values(image: Image, mask: bool | None, allow: Collection[str]) -> tuple[NDArray, list[Finding]]:
+def _values(
+    image: Image, mask: bool | None, label: int | None, allow: Collection[str]
+) -> tuple[NDArray, list[Finding]]:
     """HU or mask on the file's own axes, and what was noticed."""
     check_finite(image.raw)
     scaled = (image.slope, image.intercept) != (1.0, 0.0)
     hu = _scaled(image.raw, image.slope, image.intercept) if scaled else image.raw
-    if mask or (mask is None and is_mask(hu)):
-        return hu != 0, []
+    bone = as_mask(hu, mask, label)
+    if bone is not None:
+        return bone, []
     hu, findings = clear_padding(_compact(hu))
     return hu, findings + check_hu(hu, allow)
 
@@ -111,8 +131,14 @@ def _values(image: Image, mask: bool | None, allow: Collection[str]) -> tuple[ND
 def _scaled(raw: NDArray, slope: float, intercept: float) -> NDArray:
     """The values: whole numbers stay whole."""
     if raw.dtype.kind in "iu" and slope.is_integer() and intercept.is_integer():
-        return raw.astype(np.int32 if raw.itemsize <= 2 else np.int64) * int(slope) + int(intercept)
-    return (raw * slope + intercept).astype(np.float32)
+        wide = np.int32 if raw.itemsize <= 2 and abs(slope) < 2**14 and abs(intercept) < 2**30 else np.int64
+        return raw.astype(wide) * int(slope) + int(intercept)
+    # plane by plane, so that no second volume in double precision is made
+    values = np.empty_like(raw, dtype=np.float32)
+    with np.errstate(over="ignore"):
+        for plane, scaled in zip(raw.T, values.T, strict=True):
+            scaled[...] = plane * slope + intercept
+    return values
 
 
 def _compact(hu: NDArray) -> NDArray:
@@ -123,7 +149,8 @@ def _compact(hu: NDArray) -> NDArray:
         whole = hu.astype(np.int16)
         if hu.dtype.kind in "iu" or np.array_equal(whole, hu):
             return whole
-    return hu.astype(np.float32)
+    with np.errstate(over="ignore"):
+        return hu.astype(np.float32)
 
 
 def _finish(image: Image, voxels: NDArray, findings: list[Finding]) -> tuple[Volume, LoadReport]:

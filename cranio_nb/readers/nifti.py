@@ -13,10 +13,20 @@ import numpy as np
 from ..errors import InputRefused
 from ..grid import Affine
 from .load_report import Finding
-from .stored_image import Image, check_rest, check_shape, no_orientation, read_exactly
+from .stored_image import (
+    GZIP_PACKING,
+    Image,
+    check_promise,
+    check_rest,
+    check_shape,
+    no_orientation,
+    read_exactly,
+    stored_bytes,
+)
 
 _MM_PER_UNIT = {0: 1.0, 1: 1000.0, 2: 1.0, 3: 1e-3}  # unknown, metre, mm, micrometre (xyzt_units & 7)
 _LPS = np.diag([-1.0, -1.0, 1.0, 1.0])  # NIfTI: x to the right, y to the front
+_UNPACK = "Give a .nii or .nii.gz file, or unpack an archive first."
 _MAX_OFFSET = 2**24  # bytes of header extensions
 
 
@@ -50,8 +60,9 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
     ((4, 5, 6), array([-2., -2.,  3.,  1.]))
     """
     # the header, and as many voxels as it declares
-    data = cast(BinaryIO, gzip.GzipFile(fileobj=stream)) if stream.read(2) == b"\x1f\x8b" else stream
+    packed, size = stream.read(2) == b"\x1f\x8b", stored_bytes(stream)
     stream.seek(0)
+    data = cast(BinaryIO, gzip.GzipFile(fileobj=stream)) if packed else stream
     try:
         header = _header(data)
         shape = check_shape([int(n) for n in header.get_data_shape()])
@@ -59,8 +70,10 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
         offset = int(header.get_data_offset())
         if not header.sizeof_hdr <= offset <= _MAX_OFFSET:
             raise _corrupt(f"its voxels are said to start at byte {offset}")
+        count = int(np.prod(shape)) * dtype.itemsize
+        check_promise(count, size if packed else size - offset, packing=GZIP_PACKING if packed else 1)
         data.seek(offset)
-        raw = np.frombuffer(read_exactly(data, int(np.prod(shape)) * dtype.itemsize), dtype)
+        raw = np.frombuffer(read_exactly(data, count), dtype)
         rest = check_rest(data)
     except (EOFError, OSError, zlib.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
@@ -87,7 +100,7 @@ def _header(data: BinaryIO) -> Any:
     kind = {b"n+1\0": nib.Nifti1Header, b"n+2\0": nib.Nifti2Header}.get(start[344:348], None)
     kind = kind or {b"n+2\0": nib.Nifti2Header}.get(start[4:8])
     if kind is None:
-        raise InputRefused("UnsupportedFile", "The packed file is no NIfTI image.", "Give a .nii or .nii.gz file.")
+        raise InputRefused("UnsupportedFile", "The packed file is no NIfTI image.", _UNPACK)
     try:
         # what nibabel would remark or repair is checked below
         with LoggingOutputSuppressor(), warnings.catch_warnings():
@@ -115,7 +128,7 @@ def _affine(header: Any, allow: Collection[str]) -> tuple[Affine, list[Finding]]
         message = "The voxel size (pixdim) is not positive in every direction."
         raise InputRefused("BadGeometry", message, "Convert the file again from its source.")
 
-    # the sform is the file's own word, the qform its second
+    # the sform goes before the qform
     findings = []
     if int(header["sform_code"]) > 0:
         affine = header.get_sform()

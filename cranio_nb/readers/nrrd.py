@@ -15,7 +15,17 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from ..grid import Affine
 from .load_report import Finding
-from .stored_image import Image, check_rest, check_shape, no_orientation, read_exactly
+from .stored_image import (
+    BZIP2_PACKING,
+    GZIP_PACKING,
+    Image,
+    check_promise,
+    check_rest,
+    check_shape,
+    no_orientation,
+    read_exactly,
+    stored_bytes,
+)
 
 # sign of (x, y, z) from the file's frame to LPS
 _SPACES = {
@@ -134,6 +144,8 @@ def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[
     if encoding not in _ENCODINGS or any(skips):
         what = "skips lines or bytes" if any(skips) else f"has {_known(encoding, _OTHER_ENCODINGS)} encoding"
         raise _unsupported(what)
+    packing = 1 if encoding == "raw" else BZIP2_PACKING if encoding.startswith("b") else GZIP_PACKING
+    check_promise(count, stored_bytes(stream) - stream.tell(), packing=packing)
     data = stream
     if encoding in ("gzip", "gz"):
         data = cast(BinaryIO, gzip.GzipFile(fileobj=stream))

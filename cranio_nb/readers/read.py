@@ -12,12 +12,22 @@ from ..volume import Volume
 from .load_report import LoadReport
 
 ALLOWANCES = ("gap_fill", "implausible_hu", "no_orientation", "no_rescale", "wrong_modality")
+_ARCHIVES = (
+    b"PK\x03\x04",
+    b"PK\x05\x06",
+    b"7z\xbc\xaf\x27\x1c",
+    b"Rar!\x1a\x07",
+    b"BZh",
+    b"\xfd7zXZ\0",
+    b"\x28\xb5\x2f\xfd",
+)
 
 
 def read_ct(
     path: str | PathLike[str],
     *,
     mask: bool | None = None,
+    label: int | None = None,
     allow: Collection[str] = (),
     progress: Callable[[int, int], None] | None = None,
 ) -> tuple[Volume, LoadReport]:
@@ -29,8 +39,11 @@ def read_ct(
         A folder of DICOM files (any names, up to 8 levels of subfolders), a multi-frame DICOM file, a NIfTI file
         (``.nii``, ``.nii.gz``) or a NRRD file.
     mask : bool, optional
-        True takes every nonzero voxel as bone, False takes the values as HU. By default data of nothing but 0 and 1
+        True takes every nonzero voxel as bone, where there are 0 and one other value; False takes the values as HU.
+        By default data of nothing but 0 and 1
         are a mask.
+    label : int, optional
+        Takes the voxels of this value as bone: the skull's label in a map of labels.
     allow : collection of str
         Relaxations, each by its name, each leaving a warning in the report:
         ``"gap_fill"`` interpolates missing slices; ``"implausible_hu"`` takes values that do not look like HU;
@@ -73,15 +86,17 @@ def read_ct(
             message = "A DICOMDIR is the table of contents of a folder and holds no images."
             raise InputRefused("FileIndex", message, "Give the folder that it lies in.")
 
+        if path.is_file():
+            _check_not_packed(path)
         # each format's library is loaded only where it is needed
         if path.is_dir() or (path.is_file() and _looks_like_dicom(path)):
             from .dicom.read import read_dicom
 
-            return read_dicom(path, mask=mask, allow=allow, progress=progress)
+            return read_dicom(path, mask=mask, label=label, allow=allow, progress=progress)
         if path.is_file():
             from .image_file import read_image
 
-            return read_image(path, mask=mask, allow=allow)
+            return read_image(path, mask=mask, label=label, allow=allow)
         raise InputRefused("UnsupportedFile", "The path is neither a folder nor a regular file.")
 
 
@@ -108,6 +123,17 @@ def _refusing() -> Iterator[None]:
         # broken input may raise anything
         message = f"The input cannot be read ({type(error).__name__})."
         raise InputRefused("CorruptFile", message, "Export the scan again from its source.") from None
+
+
+def _check_not_packed(path: Path) -> None:
+    """Refuse an archive, and the index of a disc: what is wanted lies in or beside it."""
+    with open(path, "rb") as stream:
+        start = stream.read(264)
+    if start[257:262] == b"ustar" or any(start.startswith(mark) for mark in _ARCHIVES):
+        raise InputRefused("UnsupportedFile", "The file is an archive.", "Unpack it, and give the folder of the scan.")
+    if path.name.lower() == "dicomdir":
+        message = "The file is the index of a disc (DICOMDIR), which holds no images itself."
+        raise InputRefused("UnsupportedFile", message, "Give the folder that it lies in.")
 
 
 def _looks_like_dicom(path: Path) -> bool:

@@ -5,6 +5,7 @@ Only the declared number of bytes is ever read or inflated.
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass
 from typing import BinaryIO
 
@@ -15,6 +16,10 @@ from ..grid import Affine
 from .load_report import Finding
 
 MAX_VOXELS = 2**30
+MAX_BYTES = 2**31  # of voxels as stored
+GZIP_PACKING, BZIP2_PACKING = 1032, 10**6  # how many times smaller data become at most
+_SUSPECT_PACKING, _SUSPECT_BYTES = 900, 2**28  # no head is packed so well; small masks may be
+_BLOCK = 2**24  # bytes read at once
 _MAX_REST_BYTES = 2**26  # bytes
 
 
@@ -69,16 +74,75 @@ def read_exactly(stream: BinaryIO, count: int) -> bytearray:
     >>> read_exactly(io.BytesIO(b"voxels and more"), 6)
     bytearray(b'voxels')
     """
-    content = bytearray(count)
-    view, filled = memoryview(content), 0
-    while filled < count:
-        part = stream.read(min(count - filled, 2**24))
+    # grows with what is there, and not with what is promised
+    content = bytearray()
+    while len(content) < count:
+        part = stream.read(min(count - len(content), _BLOCK))
         if not part:
-            message = f"The file is cut short: it holds {filled} of {count} bytes of voxels."
+            message = f"The file is cut short: it holds {len(content)} of {count} bytes of voxels."
             raise InputRefused("CorruptFile", message, "Copy the file again from its source.")
-        view[filled : filled + len(part)] = part
-        filled += len(part)
+        content += part
     return content
+
+
+def check_promise(count: int, stored: int, *, packing: int) -> None:
+    """Check that a file can hold the bytes of voxels that its header declares, before any is read.
+
+    Parameters
+    ----------
+    count : int
+        Bytes of voxels declared.
+    stored : int
+        Bytes of the file.
+    packing : int
+        How many times smaller the encoding makes data at most; 1 for raw voxels.
+
+    Raises
+    ------
+    InputRefused
+        ``LimitExceeded`` beyond `MAX_BYTES`, or for a file packed as no image is; ``CorruptFile`` for a file too
+        small for what it declares.
+
+    Examples
+    --------
+    >>> check_promise(2**20, 2**20 + 352, packing=1)
+    >>> check_promise(2**33, 352, packing=1)
+    Traceback (most recent call last):
+    cranio_nb.errors.InputRefused: The image declares 8590 MB of voxels; at most 2147 MB are read. Crop it to the head.
+    """
+    if count > MAX_BYTES:
+        message = f"The image declares {count / 1e6:.0f} MB of voxels; at most {MAX_BYTES / 1e6:.0f} MB are read."
+        raise InputRefused("LimitExceeded", message, "Crop it to the head.")
+    if count > stored * packing:
+        message = f"The file is cut short: its {stored} bytes cannot hold {count} bytes of voxels."
+        raise InputRefused("CorruptFile", message, "Copy the file again from its source.")
+    if packing > 1 and count > _SUSPECT_BYTES and count > stored * _SUSPECT_PACKING:
+        message = f"The file packs {count / 1e6:.0f} MB into {stored / 1e6:.1f} MB, as no image of a head does."
+        raise InputRefused("LimitExceeded", message, "Check where the file comes from.")
+
+
+def stored_bytes(stream: BinaryIO) -> int:
+    """Count the bytes of an open file, and leave it where it is.
+
+    Parameters
+    ----------
+    stream : binary stream
+        Not packed.
+
+    Returns
+    -------
+    int
+
+    Examples
+    --------
+    >>> import io
+    >>> stored_bytes(io.BytesIO(b"four"))
+    4
+    """
+    at = stream.tell()
+    size = stream.seek(0, io.SEEK_END)
+    stream.seek(at)
+    return size
 
 
 def check_rest(stream: BinaryIO) -> list[Finding]:

@@ -18,6 +18,11 @@ from ..volume import Volume
 BONE_HU = 400.0
 """Lowest HU of bone (the paper, section 2)."""
 
+AIR_HU = -300.0
+"""HU below which a voxel holds mostly air."""
+_AIR_GAP_MM = 3.0  # of air on a line between the head and what is beside it; swabs and folds of skin hold less
+_INSIDE_MM = 40.0  # from the middle of the skull, still in the head
+_LINES = 400  # from the middle to a piece
 _SAME_SLICE = np.zeros((3, 3, 3), bool)  # neighbours share an edge within their slice
 _SAME_SLICE[1] = ndimage.generate_binary_structure(2, 1)
 
@@ -78,7 +83,8 @@ def segment(
         raise InputRefused("NoBone", f"No voxel reaches {threshold:g} HU.", "Lower the bone threshold, or give a CT.")
 
     # artefacts first, so that no hole of theirs is filled
-    skull = drop_artefacts(mask[box[0]], min_part=min_part)
+    hu = None if ct.voxels.dtype == bool else ct.voxels[box[0]]
+    skull = drop_artefacts(mask[box[0]], min_part=min_part, hu=hu, spacing=ct.spacing)
     out = np.zeros(ct.shape, bool)
     out[box[0]] = fill_holes(skull, max_hole_px=max_hole_mm2 / float(np.prod(ct.spacing[1:])))
     return ct.with_voxels(out)
@@ -173,8 +179,14 @@ def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDA
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 
 
-def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArray[np.bool_]:
-    """Keep the skull and its loose pieces; drop islands, couch and head holder.
+def drop_artefacts(
+    mask: NDArray[np.bool_],
+    *,
+    min_part: float = 0.02,
+    hu: NDArray | None = None,
+    spacing: NDArray[np.float64] | None = None,
+) -> NDArray[np.bool_]:
+    """Keep the skull and its loose pieces; drop islands, couch, head holder and frames.
 
     Parameters
     ----------
@@ -182,11 +194,15 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
         Thresholded CT.
     min_part : float, 0 to 1
         Smallest kept piece as a fraction of the largest.
+    hu : ndarray, shape (P, R, C), optional
+        The CT: shows where skin ends and air begins.
+    spacing : ndarray, shape (3,), optional
+        Of the voxels, mm; wanted with `hu`.
 
     Returns
     -------
     ndarray of bool, shape (P, R, C)
-        The skull, and the large pieces whose middle lies in its bounding box.
+        The skull, and the large pieces whose middle lies in its bounding box and that no air parts from it.
 
     Examples
     --------
@@ -210,11 +226,36 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
 
     # the skull is large and encloses much; a couch plate encloses little
     skull = max(large, key=lambda part: _n_voxels(boxes[part - 1]) * sizes[part])
-
-    # loose pieces of a skull lie within it, couch and head holder beside it
+    kept = [part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]
+    if hu is not None and spacing is not None and len(kept) > 1:
+        middle = np.argwhere(labels[::4, ::4, ::4] == skull).mean(axis=0) * 4
+        kept = [p for p in kept if p == skull or not _is_beyond_air(labels, p, boxes[p - 1], middle, hu, spacing)]
     keep = np.zeros(n_parts + 1, bool)
-    keep[[part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]] = True
+    keep[kept] = True
     return keep[labels]
+
+
+def _is_beyond_air(
+    labels: NDArray,
+    part: int,
+    box: tuple[slice, ...],
+    middle: NDArray[np.float64],
+    hu: NDArray,
+    spacing: NDArray[np.float64],
+) -> bool:
+    """Whether air lies between the middle of the head and most of a piece: it stands outside the skin."""
+    at = np.argwhere(labels[box] == part) + [side.start for side in box]
+    at = at[:: max(1, len(at) // _LINES)]
+    # along the line from the middle to each voxel, every mm
+    away = (at - middle) * spacing
+    length = np.linalg.norm(away, axis=1)
+    along = np.arange(0.0, length.max(), 1.0)
+    index = np.rint(middle + (along[:, None, None] / length[:, None]) * (at - middle)).astype(np.intp)
+    index = np.clip(index, 0, np.array(hu.shape) - 1)
+    air = (hu[index[..., 0], index[..., 1], index[..., 2]] < AIR_HU) & (along[:, None] < length)
+    if air[along < _INSIDE_MM].mean() > 0.5:  # a dry skull is full of air
+        return False
+    return bool((air.sum(axis=0) >= _AIR_GAP_MM).mean() > 0.5)
 
 
 def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.bool_]:

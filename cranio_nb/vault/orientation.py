@@ -16,13 +16,15 @@ _LEAST = 60.0  # mm that a vault spans each way
 _THINNED = 2.0  # mm between the voxels that are looked at
 
 
-def head_centre(bone: Volume) -> NDArray[np.float64]:
+def head_centre(bone: Volume, axes: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
     """A point on the head's axis about 85 mm below the vertex.
 
     Parameters
     ----------
     bone : Volume
-        Bool mask of the skull; planes rise to the top of the head.
+        Bool mask of the skull.
+    axes : ndarray, shape (3, 3), optional
+        Rows: the head's left, back and up, orthonormal, world; `head_axes` when not given.
 
     Returns
     -------
@@ -34,19 +36,21 @@ def head_centre(bone: Volume) -> NDArray[np.float64]:
     InputRefused
         ``NoVault`` when the mask spans less than a vault.
     """
-    points = _thinned_points(bone)
+    grid_axes = head_axes(bone)
+    turn = np.eye(3) if axes is None else np.round(axes @ grid_axes.T, 12)
+    points = _thinned_points(bone, grid_axes) @ turn.T
     no_vault = InputRefused(
         "NoVault", "The bone found does not span a skull vault (60 mm wanted each way).", "Is this a head CT?"
     )
     if not len(points):
         raise no_vault
     # the vertex and the sides of the vault, each without its few outermost voxels
-    top = np.quantile(points[:, 0], 0.9995)
-    vault = points[points[:, 0] > top - _DEPTH]
-    low, high = np.quantile(vault[:, 1:], [0.005, 0.995], axis=0)
+    top = np.quantile(points[:, 2], 0.9995)
+    vault = points[points[:, 2] > top - _DEPTH]
+    low, high = np.quantile(vault[:, :2], [0.005, 0.995], axis=0)
     if (high - low).min() < _LEAST:
         raise no_vault
-    return bone.to_world(np.array([top - _DEPTH, *(low + high) / 2]) / bone.spacing)
+    return bone.to_world(np.zeros(3)) + np.array([*(low + high) / 2, top - _DEPTH]) @ turn @ grid_axes
 
 
 def head_axes(bone: Volume) -> NDArray[np.float64]:
@@ -70,8 +74,9 @@ def head_axes(bone: Volume) -> NDArray[np.float64]:
     return np.stack([left, back, normal * np.sign(normal @ up)])
 
 
-def _thinned_points(bone: Volume) -> NDArray[np.float64]:
-    """Positions of every few bone voxels along the grid's axes (plane, row, col), shape (n, 3), mm."""
+def _thinned_points(bone: Volume, grid_axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Positions of every few bone voxels from the grid's first, along its left, back and up, shape (n, 3), mm."""
     step = np.maximum(1, np.round(_THINNED / bone.spacing)).astype(int)
     coarse = bone.voxels[:: step[0], :: step[1], :: step[2]]
-    return np.argwhere(coarse) * (step * bone.spacing)
+    own = np.round(grid_axes @ bone.edges.T, 9)  # the same whatever the header turns
+    return (np.argwhere(coarse) * step) @ own.T

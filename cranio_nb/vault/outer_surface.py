@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..volume import Volume
-from .orientation import head_axes
+from .head_frame import head_or_grid_axes
 from .ray_casting import FAR_MM, NEAR_MM
 from .ray_grid import RayGrid
 
@@ -118,7 +118,7 @@ def measure_outer_surface(bone: Volume, centre: Array) -> OuterSurface:
     OuterSurface
     """
     half = int(np.ceil(COMPARED_RAD / _STEP_RAD)) + _RIM + 2
-    grid = RayGrid(np.asarray(centre, float), head_axes(bone), _STEP_RAD, 2 * half + 1)
+    grid = RayGrid(np.asarray(centre, float), head_or_grid_axes(bone), _STEP_RAD, 2 * half + 1)
     raw, directions = np.full((grid.n, grid.n), np.nan), grid.directions
     inside = grid.polar <= COMPARED_RAD + (_RIM + 1) * _STEP_RAD
     raw[inside] = outermost_edge(bone, grid.centre, directions[inside])

@@ -113,7 +113,7 @@ def axial_frames(bone: Volume, planes: range) -> NDArray[np.float64]:
     return np.stack([[origin, *bone.edges[1:]] for origin in origins])
 
 
-def fans(radius_map: RadiusMap, n: int) -> list[Fan]:
+def make_fans(radius_map: RadiusMap, n: int) -> list[Fan]:
     """Fans whose slices cross the hole in `n` directions, evenly turned; the slices of the first cross its short side.
 
     Parameters
@@ -142,7 +142,7 @@ def fans(radius_map: RadiusMap, n: int) -> list[Fan]:
     return out
 
 
-def profile(radius_map: RadiusMap, fan: Fan) -> RayProfile:
+def read_profile(radius_map: RadiusMap, fan: Fan) -> RayProfile:
     """Radii and gap of every slice of a fan, read off a radius map.
 
     Parameters
@@ -168,7 +168,7 @@ def profile(radius_map: RadiusMap, fan: Fan) -> RayProfile:
     return RayProfile(np.zeros(2), fan.angles, outer=outer, inner=inner, missing=hole)
 
 
-def picture(
+def sample_mask(
     volume: Volume, frame: NDArray[np.float64], rows: NDArray[np.float64], cols: NDArray[np.float64]
 ) -> NDArray[np.bool_]:
     """The mask in a slice.

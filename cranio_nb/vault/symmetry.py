@@ -49,11 +49,11 @@ class SymmetryPlane:
         The point of the plane nearest to the head's centre, world mm.
     normal : ndarray, shape (3,)
         Unit normal, world, pointing along the scan's columns (to the patient's left).
-    angle : float
+    angle_rad : float
         Radians between the plane and the mid-plane of the scan.
-    offset : float
+    offset_mm : float
         Signed distance in mm from the middle of the scan to the plane, along the normal.
-    residual : float
+    residual_mm : float
         Median distance in mm of the mirrored outer surface from the surface itself: how asymmetric the skull is.
     n_iter : int
     converged : bool
@@ -61,9 +61,9 @@ class SymmetryPlane:
 
     point: Array
     normal: Array
-    angle: float
-    offset: float
-    residual: float
+    angle_rad: float
+    offset_mm: float
+    residual_mm: float
     n_iter: int
     converged: bool
 
@@ -136,9 +136,9 @@ class SymmetryPlane:
         return {
             "point": self.point.tolist(),
             "normal": self.normal.tolist(),
-            "angle_deg": float(np.degrees(self.angle)),
-            "offset_mm": self.offset,
-            "residual_mm": self.residual,
+            "angle_deg": float(np.degrees(self.angle_rad)),
+            "offset_mm": self.offset_mm,
+            "residual_mm": self.residual_mm,
             "n_iter": self.n_iter,
             "converged": self.converged,
         }
@@ -180,9 +180,9 @@ def find_symmetry_plane(bone: Volume, centre: Array) -> SymmetryPlane:
     return SymmetryPlane(
         point=point,
         normal=normal,
-        angle=float(np.arctan2(np.linalg.norm(np.cross(normal, left)), normal @ left)),
-        offset=float((point - bone.to_world((np.array(bone.shape) - 1) / 2)) @ normal),
-        residual=float(np.median(np.abs(distances[paired]))),
+        angle_rad=float(np.arctan2(np.linalg.norm(np.cross(normal, left)), normal @ left)),
+        offset_mm=float((point - bone.to_world((np.array(bone.shape) - 1) / 2)) @ normal),
+        residual_mm=float(np.median(np.abs(distances[paired]))),
         n_iter=n_iter,
         converged=bool(moved <= _SETTLED),
     )

@@ -163,7 +163,7 @@ def test_the_working_holds_a_plate_for_each_opening(made, skull):
 def test_a_plane_that_is_none_is_not_used(skull, made, monkeypatch):
     found = symmetry.find_symmetry_plane(skull("unilateral"), made.working[0].radius_map.grid.centre)
     for residual, used in ((1.2, True), (1.4, False)):
-        monkeypatch.setattr(symmetry, "find_symmetry_plane", lambda *_, r=residual: replace(found, residual=r))
+        monkeypatch.setattr(symmetry, "find_symmetry_plane", lambda *_, r=residual: replace(found, residual_mm=r))
         plate = design(skull("unilateral"), method="thin-plate")
         assert (plate.working[0].mirrored is not None) is used
         assert ("unused" in plate.record["symmetry"]) is not used

@@ -7,6 +7,7 @@ import pytest
 from dicom_series import as_unsigned_without_rescale, codes, edit, head, save, series, shift_hu
 from image_files import SMALL, file_refusal, stored_head, write_nifti, write_nrrd
 
+from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
 from cranio_nb.readers.hu_checks import AIR_HU, check_hu, clear_padding, is_mask
 
@@ -26,9 +27,62 @@ def test_mask_can_be_forced_either_way(tmp_path: Path) -> None:
     labels = write_nrrd(tmp_path / "a.nrrd", ((voxels > 300) * 255).astype("u1"), lps)
     volume, report = read_ct(labels, mask=True)
     assert report.kind == "mask" and volume.voxels.sum() == (voxels > 300).sum()
-    assert file_refusal(labels).code == "ImplausibleHU"
+    assert file_refusal(labels).code == "LabelMap"
     zeros_and_ones = write_nrrd(tmp_path / "b.nrrd", (voxels > 300).astype("u1"), lps)
     assert file_refusal(zeros_and_ones, mask=False).code == "ImplausibleHU"
+
+
+@pytest.mark.parametrize("kind", ["brain and skull", "skull and piece", "a CT", "probabilities"])
+def test_more_values_than_two_are_no_mask(kind: str, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    bone, brain = voxels > 300, (voxels > 0) & (voxels <= 300)
+    piece = bone & (np.arange(voxels.shape[2]) > 8)
+    wrong = {
+        "brain and skull": (brain + 2 * bone).astype("u1"),
+        "skull and piece": (bone.astype("u1") + piece).astype("u1"),
+        "a CT": voxels,
+        "probabilities": np.linspace(0, 1, voxels.size, dtype="f4").reshape(voxels.shape),
+    }[kind]
+    path = write_nifti(tmp_path / "a.nii", wrong, lps)
+    assert file_refusal(path, mask=True).code == "NotAMask"
+    if wrong.dtype == np.uint8:
+        error = file_refusal(path)
+        assert error.code == "LabelMap" and "--label" in error.remedy
+
+
+@pytest.mark.parametrize("label", [1, 2])
+def test_a_label_chooses_its_voxels(label: int, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    labels = np.where(voxels > 300, 2, voxels > 0).astype("u1")
+    volume, report = read_ct(write_nifti(tmp_path / "a.nii", labels, lps), label=label)
+    assert report.kind == "mask" and volume.voxels.sum() == (labels == label).sum()
+    assert file_refusal(tmp_path / "a.nii", label=7).code == "NoSuchLabel"
+
+
+def test_a_ct_in_dicom_is_no_mask(tmp_path: Path) -> None:
+    folder = save(tmp_path / "scan", series(head()))
+    with pytest.raises(InputRefused) as caught:
+        read_ct(folder, mask=True)
+    assert caught.value.code == "NotAMask"
+
+
+@pytest.mark.parametrize(("shift", "code"), [(0, ""), (50, ""), (75, "AirLevel"), (-75, "AirLevel"), (100, "refused")])
+def test_air_tells_of_a_shifted_scale(shift: int, code: str, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    air = np.where(voxels < -900, -1000, voxels).astype(np.int16)
+    path = write_nifti(tmp_path / "a.nii", air + np.int16(shift), lps)
+    if code == "refused":
+        assert file_refusal(path).code == "ImplausibleHU"
+    else:
+        assert {f.code for f in read_ct(path)[1].findings} == ({code} if code else set())
+
+
+@pytest.mark.parametrize("value", [3e38, -3e38, 1e6])
+def test_one_impossible_voxel_is_refused(value: float, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    broken = voxels.astype(np.float32)
+    broken[3, 4, 5] = value
+    assert file_refusal(write_nifti(tmp_path / "a.nii", broken, lps)).code == "ImpossibleHU"
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])

@@ -121,3 +121,25 @@ def test_no_orientation_is_refused_unless_allowed(tmp_path: Path) -> None:
         volume, report = read_ct(path, allow=("no_orientation",))
         np.testing.assert_allclose(sorted(volume.spacing), sorted((STEP, *SPACING)), atol=1e-6)
         assert next(f for f in report.findings if f.code == "NoOrientation").severity == "warning"
+
+
+@pytest.mark.parametrize("origin", [1e300, 1e30, 2e4])
+def test_an_origin_beyond_any_scanner_is_refused(origin: float, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    far = lps.copy()
+    far[1, 3] = origin
+    assert file_refusal(write_nrrd(tmp_path / "a.nrrd", voxels, far)).code == "BadGeometry"
+
+
+@pytest.mark.parametrize("planes", [2, 7])
+def test_a_few_planes_are_no_head(planes: int, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    for name, cut in (("a", voxels[:, :, :planes]), ("b", voxels[:planes])):
+        assert file_refusal(write_nifti(tmp_path / f"{name}.nii", cut, lps)).code == "TooFewSlices"
+
+
+def test_planes_too_far_apart_are_refused_as_slices_are(tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    assert (
+        file_refusal(write_nifti(tmp_path / "a.nii", voxels, lps @ np.diag([1, 1, 4, 1]))).code == "SlicesTooFarApart"
+    )

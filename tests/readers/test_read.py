@@ -2,6 +2,8 @@
 
 import bz2
 import gzip
+import tarfile
+import zipfile
 from pathlib import Path
 
 from dicom_series import head, refusal, save, series
@@ -30,3 +32,17 @@ def test_files_of_other_kinds_are_refused(tmp_path: Path) -> None:
     ):
         (tmp_path / name).write_bytes(content)
         assert file_refusal(tmp_path / name).code == "UnsupportedFile"
+
+
+def test_archives_and_indices_say_what_to_give(tmp_path: Path) -> None:
+    folder = save(tmp_path / "scan", series(head()))
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.write(folder / "image0003.dcm")
+    with tarfile.open(tmp_path / "a.tar", "w") as archive:
+        archive.add(folder / "image0003.dcm")
+    for name in ("a.zip", "a.tar"):
+        error = file_refusal(tmp_path / name)
+        assert error.code == "UnsupportedFile" and "folder" in error.remedy
+    (folder / "DICOMDIR").write_bytes((folder / "image0003.dcm").read_bytes())
+    error = refusal(folder / "DICOMDIR")
+    assert error.code == "UnsupportedFile" and "folder" in error.remedy

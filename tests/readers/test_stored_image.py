@@ -2,6 +2,8 @@
 
 import gzip
 import io
+import time
+import tracemalloc
 import zlib
 from pathlib import Path
 
@@ -35,6 +37,39 @@ def test_giant_sizes_are_refused_before_they_are_allocated(tmp_path: Path) -> No
     path = write_nrrd(tmp_path / "a.nrrd", voxels, lps)
     rewrite_header(path, "sizes", "32767 32767 32767")
     assert file_refusal(path).code == "LimitExceeded"
+
+
+@pytest.mark.parametrize("suffix", ["nii", "nii.gz", "nrrd", "raw.nrrd"])
+def test_a_promise_that_the_file_cannot_hold_costs_nothing(suffix: str, tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    path = tmp_path / f"a.{suffix}"
+    # 512 x 512 x 512 doubles: 1 GB, which is not more than is read
+    if "nii" in suffix:
+        plain = write_nifti(tmp_path / "plain.nii", voxels.astype(float), lps)
+        patch_header(plain, dim=[3, 512, 512, 512, 1, 1, 1, 1])
+        path.write_bytes(gzip.compress(plain.read_bytes()) if suffix.endswith("gz") else plain.read_bytes())
+    else:
+        write_nrrd(path, voxels.astype(float), lps, encoding="raw" if "raw" in suffix else "gzip")
+        rewrite_header(path, "sizes", "512 512 512")
+    tracemalloc.start()
+    assert file_refusal(path).code == "CorruptFile"
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert peak < 2**25
+
+
+def test_a_gigabyte_of_zeros_is_not_inflated(tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    plain = write_nifti(tmp_path / "plain.nii", voxels, lps)
+    patch_header(plain, dim=[3, 1024, 1024, 300, 1, 1, 1, 1])
+    packer = zlib.compressobj(9, zlib.DEFLATED, zlib.MAX_WBITS | 16)
+    packed = packer.compress(plain.read_bytes()[:352])
+    packed += b"".join(packer.compress(bytes(2**24)) for _ in range(38)) + packer.flush()
+    path = tmp_path / "a.nii.gz"
+    path.write_bytes(packed)
+    start = time.perf_counter()
+    assert file_refusal(path).code == "LimitExceeded"
+    assert time.perf_counter() - start < 1
 
 
 def test_only_the_declared_bytes_are_inflated(tmp_path: Path) -> None:

@@ -171,3 +171,15 @@ def test_the_ct_is_not_modified(phantom):
     mask = np.array(bone.voxels)
     segment(Volume(mask, case.affine)).voxels[:] = False
     np.testing.assert_array_equal(mask, bone.voxels)
+
+
+def test_a_holder_beyond_air_is_no_skull_and_a_piece_in_the_scalp_is():
+    z, y, x = (np.indices((60, 80, 80)) - np.array([30, 40, 40])[:, None, None, None]) * 2.0
+    r = np.sqrt(x**2 + y**2 + z**2)
+    hu = np.where(r < 52, 40, -1000).astype(np.int16)
+    skull = (np.abs(r - 42) < 3) & ~((y > 0) & (np.hypot(x, z) < 15))
+    piece = (np.abs(r - 49) < 2) & (y < 0) & (np.hypot(x, z) < 25)
+    holder = (np.abs(r - 60) < 3) & (y > 10) & (np.abs(z) < 20)
+    hu[skull | piece | holder] = 900
+    found = segment(Volume(hu, np.diag([2.0, 2.0, 2.0, 1.0]))).voxels
+    assert found[skull].all() and found[piece].all() and not found[holder].any()

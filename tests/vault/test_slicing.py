@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.vault.ray_grid import RadiusMap, RayGrid
-from cranio_nb.vault.slicing import axial_frames, fans, picture, profile
+from cranio_nb.vault.slicing import axial_frames, make_fans, read_profile, sample_mask
 from cranio_nb.volume import Volume
 
 STEP = np.radians(1.0)
@@ -30,7 +30,7 @@ def vault():
 
 @pytest.mark.parametrize("n", [1, 2, 6])
 def test_every_ray_of_every_fan_is_found_again(vault, n):
-    made = fans(vault, n)
+    made = make_fans(vault, n)
     assert len(made) == n
     for fan in made:
         np.testing.assert_allclose(fan.axes @ fan.axes.T, np.eye(3), atol=1e-12)
@@ -42,7 +42,7 @@ def test_every_ray_of_every_fan_is_found_again(vault, n):
 
 def test_a_ray_lies_in_its_slice_at_its_angle(vault):
     """Frame and angle give the same ray: angle 0 against the rows, growing towards the columns."""
-    fan = fans(vault, 3)[1]
+    fan = make_fans(vault, 3)[1]
     origin, row, col = np.moveaxis(fan.frames(CENTRE), 1, 0)
     np.testing.assert_array_equal(origin, np.tile(CENTRE, (len(origin), 1)))
     a = fan.angles[None, :, None]
@@ -52,8 +52,8 @@ def test_a_ray_lies_in_its_slice_at_its_angle(vault):
 
 def test_the_first_fan_crosses_the_short_side_and_the_others_turn_evenly(vault):
     crossed = []
-    for fan in fans(vault, 6):
-        seen = profile(vault, fan)
+    for fan in make_fans(vault, 6):
+        seen = read_profile(vault, fan)
         middle = np.argmin(np.abs(fan.tilts))
         first, last = seen.gap[middle]
         crossed.append(seen.angles[last] - seen.angles[first])
@@ -64,7 +64,7 @@ def test_the_first_fan_crosses_the_short_side_and_the_others_turn_evenly(vault):
 
 
 def test_slices_are_a_millimetre_apart_and_cover_the_hole(vault):
-    for fan in fans(vault, 4):
+    for fan in make_fans(vault, 4):
         radius = np.nanmedian(vault.outer)
         np.testing.assert_allclose(np.diff(fan.tilts) * radius, 1.0)
         slice_, ray = fan.locate(vault.grid.directions[vault.hole])
@@ -74,8 +74,8 @@ def test_slices_are_a_millimetre_apart_and_cover_the_hole(vault):
 
 
 def test_a_profile_reads_the_vaults_radii(vault):
-    fan = fans(vault, 6)[2]
-    seen = profile(vault, fan)
+    fan = make_fans(vault, 6)[2]
+    seen = read_profile(vault, fan)
     v, u = (vault.grid.locate(fan.directions) - (N - 1) / 2) * STEP
     known = np.isfinite(seen.outer)
     assert known.mean() > 0.5
@@ -101,12 +101,12 @@ def box():
 def test_the_picture_of_an_axial_frame_is_the_slice_itself(box):
     frames = axial_frames(box, range(2, 6))
     for plane, frame in zip(range(2, 6), frames, strict=True):
-        np.testing.assert_array_equal(picture(box, frame, np.arange(20.0), np.arange(30.0)), box.voxels[plane])
+        np.testing.assert_array_equal(sample_mask(box, frame, np.arange(20.0), np.arange(30.0)), box.voxels[plane])
 
 
 def test_a_picture_shows_any_part_and_nothing_beyond_the_grid(box):
     (frame,) = axial_frames(box, range(3, 4))
-    seen = picture(box, frame, np.arange(-5, 12.0), np.array([4.0, 28.0, 35.0]))
+    seen = sample_mask(box, frame, np.arange(-5, 12.0), np.array([4.0, 28.0, 35.0]))
     assert not seen[:5].any() and not seen[:, 2].any()
     np.testing.assert_array_equal(seen[5:, :2], box.voxels[3, :12, [4, 28]].T)
 
@@ -118,6 +118,6 @@ def test_a_fan_shows_a_ball_about_its_eye_as_a_disk_in_every_slice(vault):
     ball = Volume((index**2).sum(axis=0) <= 25**2, affine)
     across = np.arange(-30, 31.0)
     disk = across[:, None] ** 2 + across**2
-    for frame in fans(vault, 2)[1].frames(CENTRE)[::20]:
-        seen = picture(ball, frame, across, across)
+    for frame in make_fans(vault, 2)[1].frames(CENTRE)[::20]:
+        seen = sample_mask(ball, frame, across, across)
         assert seen[disk <= 24**2].all() and not seen[disk >= 26**2].any()

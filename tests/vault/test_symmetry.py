@@ -59,11 +59,11 @@ def test_the_plane_of_a_symmetric_head_is_its_mid_plane_whatever_is_missing(defe
     bone, head = scanned(defect, turn(*rotation))
     plane = found(bone)
     check_is_mid_plane(plane, head)
-    assert plane.converged and plane.residual < 0.25
+    assert plane.converged and plane.residual_mm < 0.25
     column = bone.affine[:3, 2] / np.linalg.norm(bone.affine[:3, 2])
-    assert plane.angle == pytest.approx(np.arccos(min(1.0, column[0])), abs=np.radians(0.2))
+    assert plane.angle_rad == pytest.approx(np.arccos(min(1.0, column[0])), abs=np.radians(0.2))
     middle = bone.to_world((np.array(bone.shape) - 1) / 2)
-    assert plane.offset == pytest.approx((head.centre - middle)[0], abs=0.3)
+    assert plane.offset_mm == pytest.approx((head.centre - middle)[0], abs=0.3)
 
 
 @pytest.mark.parametrize("defect", DEFECTS)
@@ -77,7 +77,9 @@ def test_it_moves_with_the_header(defect):
         there = found(Volume(bone.voxels, move @ bone.affine))
         np.testing.assert_allclose(there.normal, move[:3, :3] @ here.normal, atol=1e-8)
         np.testing.assert_allclose(there.point, move[:3, :3] @ here.point + move[:3, 3], atol=1e-6)
-        assert (there.angle, there.offset, there.residual) == pytest.approx((here.angle, here.offset, here.residual))
+        assert (there.angle_rad, there.offset_mm, there.residual_mm) == pytest.approx(
+            (here.angle_rad, here.offset_mm, here.residual_mm)
+        )
 
 
 @pytest.mark.parametrize("axes", [(2,), (1,), (1, 2)])
@@ -104,14 +106,14 @@ def test_the_mirror_image_of_a_skull_has_the_mirrored_plane():
     case = phantom_case("tiny", "unilateral", 0)
     bone = Volume(case.bone, case.affine)
     here, there = found(bone), found(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
-    assert there.offset == pytest.approx(-here.offset, abs=0.05)
-    assert there.angle == pytest.approx(here.angle, abs=np.radians(0.05))
-    assert there.residual == pytest.approx(here.residual, abs=0.02)
+    assert there.offset_mm == pytest.approx(-here.offset_mm, abs=0.05)
+    assert there.angle_rad == pytest.approx(here.angle_rad, abs=np.radians(0.05))
+    assert there.residual_mm == pytest.approx(here.residual_mm, abs=0.02)
 
 
 def test_an_asymmetric_head_has_a_larger_residual():
     case = phantom_case("tiny", "unilateral", 0)
-    assert found(Volume(case.bone, case.affine)).residual > 1.5 * found(scanned("unilateral")[0]).residual
+    assert found(Volume(case.bone, case.affine)).residual_mm > 1.5 * found(scanned("unilateral")[0]).residual_mm
 
 
 def test_reflecting_twice_changes_nothing_and_volumes_go_along():
@@ -130,7 +132,7 @@ def test_reflecting_twice_changes_nothing_and_volumes_go_along():
 def test_the_record_is_json_in_degrees():
     plane = found(scanned("round", turn(12, -7, 5))[0])
     record = json.loads(json.dumps(plane.record(), allow_nan=False))
-    assert record["angle_deg"] == pytest.approx(np.degrees(plane.angle)) and record["converged"] is True
+    assert record["angle_deg"] == pytest.approx(np.degrees(plane.angle_rad)) and record["converged"] is True
 
 
 def test_half_a_skull_has_no_plane():

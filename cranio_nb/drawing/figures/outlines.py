@@ -87,11 +87,11 @@ def outlines_figure(
     figure, ax = new_figure(5.0, 5.0 * len(rows) / len(cols))
     for mask, colour in ((bone, BONE), (truth, TRUTH)):
         if mask is not None:
-            fill_mask(ax, slicing.picture(mask, frame, rows, cols), extent, colour)
+            fill_mask(ax, slicing.sample_mask(mask, frame, rows, cols), extent, colour)
     # outlines of the smoothed masks: those of voxels would be stairs
     for i, patch in enumerate(patches):
         colour, dashes = line_style(i)
-        soft = ndimage.gaussian_filter(slicing.picture(patch, frame, rows, cols).astype(float), 1.0)
+        soft = ndimage.gaussian_filter(slicing.sample_mask(patch, frame, rows, cols).astype(float), 1.0)
         if soft.max() > 0.5:
             style = (0, dashes) if dashes else "-"
             ax.contour(cols, rows, soft, levels=[0.5], colors=[colour], linestyles=[style], linewidths=1.4)

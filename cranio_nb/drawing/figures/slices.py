@@ -42,10 +42,10 @@ def draw_slice(
     rows, cols = (np.arange(low, high, _PIXEL_MM) for low, high in ((top, bottom), (left, right)))
     extent = _extent(rows, cols)
     # areas first: bone, and the patch over it
-    seen = slicing.picture(bone, frame, rows / unit, cols / unit)
+    seen = slicing.sample_mask(bone, frame, rows / unit, cols / unit)
     fill_mask(ax, seen, extent, BONE)
     if patch is not None:
-        fill_mask(ax, slicing.picture(patch, frame, rows / unit, cols / unit), extent, PATCH, alpha=0.55)
+        fill_mask(ax, slicing.sample_mask(patch, frame, rows / unit, cols / unit), extent, PATCH, alpha=0.55)
     # then boundaries and curves, outer before inner
     edges = _skeleton_boundaries(bone, frame, unit) if skeleton else None
     for points, colour in zip(edges or _boundaries(seen, rows, cols, _centre(sliced, frame)), _COLOURS, strict=True):

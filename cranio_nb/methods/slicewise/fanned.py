@@ -55,9 +55,9 @@ def bridge(
     """
     radius_map = radius_measurement.measure_around(bone, opening)
     made, radii, weights = [], [], []
-    for fan in slicing.fans(radius_map, directions):
+    for fan in slicing.make_fans(radius_map, directions):
         # curves of this direction, and their radii and weights on the map's own rays
-        profile = slicing.profile(radius_map, fan)
+        profile = slicing.read_profile(radius_map, fan)
         ends = by_rays(profile, skip_mm=skip_mm, reach_mm=reach_mm, coupling_mm=coupling_mm)
         results = inflate.carry(inflate.inflate(ends, np.zeros(2), settings))
         made.append(SlicedDesign(opening, fan.frames(radius_map.grid.centre), 1.0, results))

@@ -54,7 +54,7 @@ class Membrane:
     Parameters
     ----------
     mesh : Mesh
-        Its first vertices are the points of the loop, in their order; normals look along `span`'s normal.
+        Its first vertices are the points of the loop, in their order; normals look along `span_loop`'s normal.
     areas : tuple of float
         Area after the harmonic step and after each further one; never rises.
     converged : bool
@@ -66,7 +66,7 @@ class Membrane:
     converged: bool
 
 
-def even(loop: Loop, step: float, smooth: float) -> Loop:
+def resample_loop(loop: Loop, step: float, smooth: float) -> Loop:
     """The same loop with even steps, smoothed.
 
     Parameters
@@ -95,7 +95,7 @@ def even(loop: Loop, step: float, smooth: float) -> Loop:
     return Loop(np.roll(points, first, axis=0), np.roll(stations, first), loop.turn)
 
 
-def span(
+def span_loop(
     loop: NDArray[np.float64], normal: NDArray[np.float64], step: float, *, tol: float = 1e-3, max_iter: int = 30
 ) -> Membrane:
     """Membrane of least area across a loop.
@@ -165,7 +165,7 @@ def plane_axes(loop: NDArray[np.float64], normal: NDArray[np.float64]) -> NDArra
     return np.stack([first, np.cross(normal, first), normal])
 
 
-def wall(outer: Loop, inner: Loop) -> NDArray[np.intp]:
+def join_loops(outer: Loop, inner: Loop) -> NDArray[np.intp]:
     """Triangles between two loops that share their stations.
 
     Vertices count through the outer loop's points, then the inner one's. Both loops run counter-clockwise seen from
@@ -194,7 +194,7 @@ def wall(outer: Loop, inner: Loop) -> NDArray[np.intp]:
     return np.where(faces < 0, faces + n, faces)
 
 
-def stitched(outer: Membrane, inner: Membrane, outer_rim: Loop, inner_rim: Loop) -> Mesh:
+def join_membranes(outer: Membrane, inner: Membrane, outer_rim: Loop, inner_rim: Loop) -> Mesh:
     """Closed mesh of two membranes and the wall between their rims.
 
     Parameters
@@ -208,7 +208,7 @@ def stitched(outer: Membrane, inner: Membrane, outer_rim: Loop, inner_rim: Loop)
     """
     # vertices: the outer membrane's, then the inner one's, whose first m are its rim
     n, rim, m = len(outer_rim.points), len(outer.mesh.vertices), len(inner_rim.points)
-    side = wall(outer_rim, inner_rim)
+    side = join_loops(outer_rim, inner_rim)
     side = np.where(side < n, side, side - n + rim)
     # the inner membrane is turned over: its outside is towards the brain
     faces = np.concatenate([outer.mesh.faces, side, inner.mesh.faces[:, ::-1] + rim])

@@ -14,7 +14,7 @@ from ...volume import Volume
 _ASIDE = np.array([1.37e-6, 2.11e-6])  # voxels: no line through voxel centres meets an edge of the mesh
 
 
-def inside(mesh: Mesh, grid: Volume) -> NDArray[np.bool_]:
+def fill_mesh(mesh: Mesh, grid: Volume) -> NDArray[np.bool_]:
     """Voxels whose centre a closed mesh winds around.
 
     Parameters

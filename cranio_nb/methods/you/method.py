@@ -10,7 +10,7 @@ over a spherical cap of height h the fill of least area lies h / 2 too deep in t
 2. Guiding points on the outer rim: given, or found at even steps around the hole (ours). Each has a partner on the
    inner surface behind it (ours).
 3. The rims: shortest paths along the edges of the mesh from guide to guide, outside and inside.
-4. `membrane.span`: across each rim the surface of least area, in triangles of the size of the voxels.
+4. `membrane.span_loop`: across each rim the surface of least area, in triangles of the size of the voxels.
 5. The wall between the rims closes the solid. The patch is the voxels in it, off the bone, and the mesh that is
    delivered is that of the patch: so it never overlaps the bone.
 """
@@ -189,7 +189,7 @@ def fill_between(bone: Volume, opening: Opening, guides: NDArray[np.float64]) ->
     step = float(bone.voxel_volume ** (1 / 3))
     outer_rim, outer = _spanned(_path_loop(skull, outer_at, lean), normal, step)
     inner_rim, inner = _spanned(_path_loop(skull, inner_at, -lean), normal, step)
-    closed = membrane.stitched(outer, inner, outer_rim, inner_rim)
+    closed = membrane.join_membranes(outer, inner, outer_rim, inner_rim)
     points = skull.vertices
     return Filling(skull, points[outer_at], points[inner_at], outer_rim, inner_rim, outer, inner, closed)
 
@@ -198,9 +198,9 @@ def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop,
     """The rim along a way on the mesh, and the fill across it; smoothed no more than it takes to be spanned."""
     # a rim with kinks may cross itself seen from outside: smooth more until it does not
     for smooth in _SMOOTH:
-        rim = membrane.even(way, step, smooth)
+        rim = membrane.resample_loop(way, step, smooth)
         try:
-            return rim, membrane.span(rim.points, normal, step)
+            return rim, membrane.span_loop(rim.points, normal, step)
         except InputRefused as refused:
             problem = refused
     raise problem
@@ -209,7 +209,7 @@ def _spanned(way: Loop, normal: NDArray[np.float64], step: float) -> tuple[Loop,
 def _solid(bone: Volume, opening: NDArray[np.bool_], closed: Mesh) -> NDArray[np.bool_]:
     """Voxels inside the solid and off the bone, in one piece, without the slivers where a fill grazes the bone."""
     return voxel_pieces.keep_main_piece(
-        ndimage.binary_opening(mesh_to_voxels.inside(closed, bone) & ~bone.voxels), opening
+        ndimage.binary_opening(mesh_to_voxels.fill_mesh(closed, bone) & ~bone.voxels), opening
     )
 
 

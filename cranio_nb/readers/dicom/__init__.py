@@ -4,8 +4,8 @@
 
 1. `file_list`       folder -> files
 2. `parse`           file -> its elements, and where its pixels lie
-3. `slice_header`    elements -> what each image says about itself
-4. `series_choice`   images -> the slices of the head CT
+3. `slice_header`    elements -> what each image says about itself (`scan`: 1 to 3 over a folder)
+4. `series_choice`   images -> the slices of the head CT (`continuation`: which are whole)
 5. `duplicates`      slices -> one per position
 6. `geometry`        slices -> a straight stack
 7. `steps`           stack -> even steps

@@ -6,14 +6,14 @@ compressed stream is compared with the header before the decoder may allocate fo
 
 from __future__ import annotations
 
-import warnings
 from importlib.util import find_spec
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 from pydicom import uid
-from pydicom.encaps import get_frame
-from pydicom.pixels import pixel_array
+from pydicom.encaps import encapsulate
+from pydicom.pixels import get_decoder
 
 from .parse import PixelPlace
 from .slice_header import SliceHeader
@@ -22,19 +22,26 @@ LOSSY = {uid.JPEGLSNearLossless, uid.JPEG2000, uid.HTJ2K, uid.JPEGBaseline8Bit, 
 _JPEG_LS = {uid.JPEGLSLossless, uid.JPEGLSNearLossless}
 _JPEG2000 = {uid.JPEG2000Lossless, uid.JPEG2000, uid.HTJ2KLossless, uid.HTJ2KLosslessRPCL, uid.HTJ2K}
 _JPEG = {uid.JPEGBaseline8Bit, uid.JPEGExtended12Bit, uid.JPEGLossless, uid.JPEGLosslessSV1}
+# start-of-frame markers of each process: baseline, extended, lossless
+_PROCESSES = {
+    uid.JPEGBaseline8Bit: {0xC0},
+    uid.JPEGExtended12Bit: {0xC0, 0xC1},
+    uid.JPEGLossless: {0xC3},
+    uid.JPEGLosslessSV1: {0xC3},
+}
 COMPRESSED = {uid.RLELossless, *_JPEG_LS, *_JPEG2000, *_JPEG}
 # (module, package) of each family's decoder; run length coding needs none
 _NEEDED = {
     **dict.fromkeys(_JPEG_LS, ("jpeg_ls", "pyjpegls")),
     **dict.fromkeys(_JPEG2000, ("openjpeg", "pylibjpeg-openjpeg")),
-    **dict.fromkeys(_JPEG, ("libjpeg", "pylibjpeg-libjpeg")),
+    **dict.fromkeys(_JPEG, ("imagecodecs", "imagecodecs")),
 }
 # markers before the size: start of frame of JPEG and JPEG-LS (all but tables), and SIZ of JPEG 2000
 _FRAME_MARKERS = {*range(0xC0, 0xD0), 0xF7} - {0xC4, 0xC8, 0xCC}
 _NO_LENGTH = {0x01, *range(0xD0, 0xD9)}
 
 
-def decode(header: SliceHeader, place: PixelPlace) -> NDArray[np.integer]:
+def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np.integer]:
     """Decode the stored numbers of one compressed image.
 
     Parameters
@@ -43,6 +50,8 @@ def decode(header: SliceHeader, place: PixelPlace) -> NDArray[np.integer]:
         Of an image whose transfer syntax is in `COMPRESSED`.
     place : PixelPlace
         Where its compressed data lie.
+    data : binary stream
+        The file.
 
     Returns
     -------
@@ -53,10 +62,15 @@ def decode(header: SliceHeader, place: PixelPlace) -> NDArray[np.integer]:
     ------
     Exception
         Whatever the decoder meets; `ValueError` where the stream's own size is not the header's.
+
+    Warns
+    -----
+    UserWarning
+        Where the stream holds more than the image needs.
     """
-    with open(place.path, "rb") as stream:
-        stream.seek(place.offset)
-        frame = get_frame(stream, header.frame, number_of_frames=header.frames)
+    frame = _frame_bytes(header, place, data)
+    if place.syntax in _JPEG:
+        check_jpeg_stream(frame, place.syntax, header.bits[0])
     if place.syntax != uid.RLELossless and read_frame_size(frame) != (header.rows, header.cols):
         raise ValueError("the size in the stream is not that of the header")
     if place.syntax in _JPEG2000:
@@ -64,15 +78,95 @@ def decode(header: SliceHeader, place: PixelPlace) -> NDArray[np.integer]:
 
         return _signed_as(openjpeg.decode(frame), header)
     if place.syntax in _JPEG:
-        import libjpeg
+        import imagecodecs
 
-        return _signed_as(libjpeg.decode(frame), header)
-    plugin = "pyjpegls" if place.syntax in _JPEG_LS else "pydicom"
-    index = header.frame if header.frames > 1 else None
-    with warnings.catch_warnings():
-        # remarks on odd but readable headers
-        warnings.simplefilter("ignore")
-        return pixel_array(place.path, index=index, raw=True, decoding_plugin=plugin)
+        return _signed_as(imagecodecs.jpeg8_decode(frame), header)
+    if place.syntax in _JPEG_LS:
+        import jpeg_ls
+
+        return _signed_as(jpeg_ls.decode(np.frombuffer(frame, np.uint8)), header)
+    return _run_lengths(frame, header)
+
+
+def _run_lengths(frame: bytes, header: SliceHeader) -> NDArray[np.integer]:
+    """The numbers of a run-length coded image."""
+    options: dict[str, Any] = {
+        "rows": header.rows,
+        "columns": header.cols,
+        "number_of_frames": 1,
+        "samples_per_pixel": 1,
+        "bits_allocated": header.bits[0],
+        "bits_stored": header.bits[1],
+        "photometric_interpretation": "MONOCHROME2",
+        "pixel_representation": int(header.signed),
+        "pixel_keyword": "PixelData",
+    }
+    data = encapsulate([frame], has_bot=False)
+    return get_decoder(uid.RLELossless).as_array(data, raw=True, decoding_plugin="pydicom", **options)[0]
+
+
+def _frame_bytes(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> bytes:
+    """The compressed stream of one frame: all fragments of a single image, or a frame's own."""
+    table, *fragments = place.items
+    if header.frames == 1:
+        own = fragments
+    elif len(fragments) == header.frames:
+        own = fragments[header.frame : header.frame + 1]
+    else:
+        own = _fragments_by_table(header, table, fragments, data)
+    parts = []
+    for offset, length in own:
+        data.seek(offset)
+        parts.append(data.read(length))
+    return b"".join(parts)
+
+
+def _fragments_by_table(
+    header: SliceHeader, table: tuple[int, int], fragments: list[tuple[int, int]], data: BinaryIO
+) -> list[tuple[int, int]]:
+    """The fragments of one frame, by the table of offsets from the first fragment's item."""
+    data.seek(table[0])
+    starts = np.frombuffer(data.read(table[1] // 4 * 4), "<u4")
+    if len(starts) != header.frames:
+        raise ValueError("the frames cannot be told apart")
+    first = fragments[0][0] - 8
+    begin = int(starts[header.frame])
+    end = int(starts[header.frame + 1]) if header.frame + 1 < header.frames else np.inf
+    return [(offset, length) for offset, length in fragments if begin <= offset - 8 - first < end]
+
+
+def check_jpeg_stream(frame: bytes, syntax: str, allocated: int) -> None:
+    """Check that a JPEG stream is of the process that its transfer syntax names, of one component, and whole.
+
+    Parameters
+    ----------
+    frame : bytes
+        One compressed image.
+    syntax : str
+        UID of the transfer syntax.
+    allocated : int
+        Bits of a stored number.
+
+    Raises
+    ------
+    ValueError
+        The decoder would take such a stream, and fill what is missing.
+
+    Examples
+    --------
+    >>> start = bytes.fromhex("FFD8 FFC1 000B 0C 0200 0100 01 011100")
+    >>> check_jpeg_stream(start + bytes(20) + bytes.fromhex("FFD9"), uid.JPEGExtended12Bit, 16)
+    >>> check_jpeg_stream(start + bytes(20), uid.JPEGExtended12Bit, 16)
+    Traceback (most recent call last):
+    ValueError: the stream has no end
+    """
+    marker, at = _frame_marker(frame)
+    if frame[:2] != b"\xff\xd8" or marker not in _PROCESSES[uid.UID(syntax)]:
+        raise ValueError("the stream is of another process than its transfer syntax")
+    if not frame.rstrip(b"\0\xff").endswith(b"\xff\xd9"):
+        raise ValueError("the stream has no end")
+    if frame[at + 9] != 1 or frame[at + 4] > allocated:
+        raise ValueError("the stream holds colours or more bits than the header")
 
 
 def find_missing_decoder(syntax: str) -> str:
@@ -118,23 +212,33 @@ def read_frame_size(frame: bytes) -> tuple[int, int] | None:
     >>> read_frame_size(start + bytes(20))
     (512, 256)
     """
+    marker, at = _frame_marker(frame)
+    if marker == 0x51:  # JPEG 2000: the image's two corners on the reference grid
+        x1, y1, x0, y0 = (int.from_bytes(frame[at + 6 + 4 * i : at + 10 + 4 * i], "big") for i in range(4))
+        return y1 - y0, x1 - x0
+    if marker:  # JPEG, JPEG-LS: precision, then rows and columns
+        rows, cols = (int.from_bytes(frame[at + 5 + 2 * i : at + 7 + 2 * i], "big") for i in range(2))
+        return rows, cols
+    return None
+
+
+def _frame_marker(frame: bytes) -> tuple[int, int]:
+    """The marker of the segment that holds the image's size, and where it is; 0 where there is none."""
     at = 2  # behind the start-of-image marker
     while at + 22 <= len(frame) and frame[at] == 0xFF:
         marker = frame[at + 1]
-        if marker == 0x51:  # JPEG 2000: the image's two corners on the reference grid
-            x1, y1, x0, y0 = (int.from_bytes(frame[at + 6 + 4 * i : at + 10 + 4 * i], "big") for i in range(4))
-            return y1 - y0, x1 - x0
-        if marker in _FRAME_MARKERS:  # JPEG, JPEG-LS: precision, then rows and columns
-            rows, cols = (int.from_bytes(frame[at + 5 + 2 * i : at + 7 + 2 * i], "big") for i in range(2))
-            return rows, cols
+        if marker == 0x51 or marker in _FRAME_MARKERS:
+            return marker, at
         # any other segment is passed over; FF FF is filling
         step = 0 if marker in _NO_LENGTH or marker == 0xFF else int.from_bytes(frame[at + 2 : at + 4], "big")
         at += 1 if marker == 0xFF else 2 + step
-    return None
+    return 0, 0
 
 
 def _signed_as(numbers: NDArray[np.integer], header: SliceHeader) -> NDArray[np.integer]:
     """The same bits read with the header's sign: some encoders write signed data as unsigned."""
+    # in the header's width: a stream of few bits may come in single bytes
+    numbers = numbers.astype(f"{numbers.dtype.kind}{max(numbers.itemsize, header.bits[0] // 8)}", copy=False)
     if (numbers.dtype.kind == "i") == header.signed:
         return numbers
     # shift the sign to the highest bit and back

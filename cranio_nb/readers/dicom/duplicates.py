@@ -10,7 +10,7 @@ import numpy as np
 from ...errors import InputRefused
 from ..load_report import Finding
 from .geometry import SAME_PLACE_MM, bad_geometry, check_geometry, sort_by_height
-from .pixel_data import check_format, digest_pixels, read_pixels
+from .pixel_data import check_format, digest_pixels, read_stack
 from .slice_header import SliceHeader
 
 # what may tell two scans at the same positions apart
@@ -107,17 +107,19 @@ def _position_groups(ordered: list[SliceHeader], heights: np.ndarray) -> list[li
 
 def _without_copies(groups: list[list[SliceHeader]]) -> tuple[list[list[SliceHeader]], int]:
     """The groups with slices of equal pixels and rescale once, and how many were dropped."""
+    # what the doubled slices hold, read file by file
+    doubled = [(index, header) for index, group in enumerate(groups) if len(group) > 1 for header in group]
+    for index, header in doubled:
+        check_format(header, index)
+    stack = read_stack([header for _, header in doubled], [index for index, _ in doubled])
+    digests = {id(doubled[i][1]): digest_pixels(pixels) for i, pixels in stack}
+
+    # by pixels and rescale; the first of equals stays
     kept, dropped = [], 0
-    for index, group in enumerate(groups):
-        if len(group) == 1:
-            kept.append(group)
-            continue
-        # by pixels and rescale; the first of equals stays
+    for group in groups:
         different: dict[object, SliceHeader] = {}
         for header in group:
-            check_format(header, index)
-            pixels = digest_pixels(read_pixels(header, index))
-            meaning = (pixels, header.slope, header.intercept, tuple(np.asarray(header.position)))
+            meaning = (digests.get(id(header)), header.slope, header.intercept, tuple(np.asarray(header.position)))
             different.setdefault(meaning, header)
         kept.append(list(different.values()))
         dropped += len(group) - len(different)

@@ -15,11 +15,11 @@ MAX_DEPTH = 8
 # A file index by name only: it points elsewhere, and the folder is walked anyway.
 _INDEX_NAMES = {"dicomdir"}
 IMAGE_SUFFIXES = {".dcm", ".dicom", ".ima"}
-_PREAMBLE = 132  # bytes before the first element
+_MAC_PREFIX = "._"  # a Mac keeps what other file systems cannot hold in a second file of this name
 
 
 def list_files(folder: Path) -> tuple[list[Path], list[Finding]]:
-    """List the regular, non-empty files below a folder, sorted by name.
+    """List the regular files below a folder, sorted by name.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def list_files(folder: Path) -> tuple[list[Path], list[Finding]]:
     Raises
     ------
     InputRefused
-        ``LimitExceeded`` for too many files, ``CorruptDicom`` for an empty image file, ``PermissionDenied``.
+        ``LimitExceeded`` for too many files, ``PermissionDenied``.
 
     Examples
     --------
@@ -83,11 +83,7 @@ def _kind(entry: os.DirEntry[str]) -> str:
         return "special file"
     if entry.name.lower() in _INDEX_NAMES:
         return "file index"
-    size = entry.stat(follow_symlinks=False).st_size
-    if size <= _PREAMBLE and Path(entry.name).suffix.lower() in IMAGE_SUFFIXES:
-        message = f"One image file of the folder has only {size} bytes."
-        raise InputRefused("CorruptDicom", message, "Copy the scan again from its source.")
-    return "file" if size else "empty file"
+    return "Mac leftover" if entry.name.startswith(_MAC_PREFIX) else "file"
 
 
 def _skipped_findings(skipped: Counter[str]) -> list[Finding]:

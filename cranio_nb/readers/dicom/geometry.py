@@ -19,6 +19,7 @@ MAX_STEP_RATIO = 4.0  # widest to narrowest step that is resampled
 MIN_SLICES = 8
 SAME_PLACE_MM = 1e-3  # mm
 _SPACING_RANGE_MM = (0.05, 10.0)  # mm in the plane
+_FARTHEST_MM = 1e4  # mm: no scanner is so large, and single precision still tells 0.001 mm apart there
 _REMEDY = "Export the series again from its source."
 
 
@@ -133,6 +134,8 @@ def check_geometry(headers: list[SliceHeader]) -> None:
             if value is None or not np.isfinite(value).all():
                 what = "has no" if value is None else "has an unreadable"
                 raise bad_geometry(f"Slice {index} (in file order) {what} {name}.")
+        if header.position is None or np.abs(header.position).max() > _FARTHEST_MM:
+            raise bad_geometry(f"Slice {index} (in file order) lies more than {_FARTHEST_MM:g} mm away.")
         low, high = _SPACING_RANGE_MM
         if header.spacing is None or header.spacing.min() < low or header.spacing.max() > high:
             raise bad_geometry(f"Slice {index} (in file order) has a PixelSpacing outside {low} to {high} mm.")

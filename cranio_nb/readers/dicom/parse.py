@@ -11,7 +11,7 @@ import warnings
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import BinaryIO
 
@@ -26,6 +26,7 @@ from ...errors import InputRefused
 MAX_SIDE = 4096  # rows, columns
 MAX_SLICES = 4000
 MAX_INFLATED = 256 * 2**20  # bytes of one inflated file
+_MAX_ITEMS, _MAX_ITEMS_PER_FRAME = 256, 16  # of encapsulated pixel data: so many, and so many more for each frame
 UNDEFINED_LENGTH = 0xFFFFFFFF
 # CT images, classic and multi-frame; some writers leave the class out
 CT_CLASSES = {"", "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.2.1", "1.2.840.10008.5.1.4.1.1.2.2"}
@@ -37,10 +38,13 @@ _KEYWORDS = (
     "ContentTime ConvolutionKernel PatientID PatientName PatientBirthDate FrameOfReferenceUID Rows Columns "
     "SamplesPerPixel PhotometricInterpretation BitsAllocated BitsStored HighBit PixelRepresentation NumberOfFrames "
     "PixelSpacing ImagePositionPatient ImageOrientationPatient SliceThickness RescaleSlope RescaleIntercept "
-    "RescaleType ModalityLUTSequence PixelPaddingValue PixelPaddingRangeLimit LossyImageCompression "
-    "SharedFunctionalGroupsSequence PerFrameFunctionalGroupsSequence"
+    "RescaleType GantryDetectorTilt ModalityLUTSequence PixelPaddingValue PixelPaddingRangeLimit "
+    "LossyImageCompression SharedFunctionalGroupsSequence PerFrameFunctionalGroupsSequence"
 ).split()
-_TAGS: list[BaseTag | int] = [BaseTag(tag) for tag in map(tag_for_keyword, _KEYWORDS) if tag is not None]
+OVERLAY_BITS: list[BaseTag | int] = [
+    BaseTag(0x60000102 + 0x20000 * i) for i in range(16)
+]  # which bit of a pixel holds graphics
+_TAGS: list[BaseTag | int] = [*(BaseTag(tag) for tag in map(tag_for_keyword, _KEYWORDS) if tag), *OVERLAY_BITS]
 
 
 @dataclass(frozen=True)
@@ -61,6 +65,10 @@ class PixelPlace:
         Bytes of pixel data; `UNDEFINED_LENGTH` for encapsulated data.
     is_float : bool
         Whether they are floating-point numbers.
+    inflated : int
+        Bytes of the data set once inflated; 0 where it is not deflated.
+    items : tuple of (int, int)
+        Offset and bytes of each item of encapsulated data, the table of offsets first; else empty.
     """
 
     path: Path
@@ -69,6 +77,8 @@ class PixelPlace:
     offset: int
     length: int
     is_float: bool
+    inflated: int = 0
+    items: tuple[tuple[int, int], ...] = ()
 
 
 def looks_like_dicom(start: bytes) -> bool:
@@ -241,9 +251,7 @@ def _parse_stream(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, Pix
         _check_end(data, meta, dataset, file)
     if "Rows" in dataset or "Columns" in dataset:
         _check_sides(dataset, file)
-    if places:
-        _check_length(data, places[0])
-    return dataset, places[0] if places else None
+    return dataset, _completed(data, places[0], dataset) if places else None
 
 
 def _check_end(data: BinaryIO, meta: Dataset, dataset: Dataset, file: int) -> None:
@@ -280,27 +288,38 @@ def _over_limit(file: int, what: str, declared: object, cap: int) -> InputRefuse
     return InputRefused("LimitExceeded", message, "Check where the file comes from.")
 
 
-def _check_length(data: BinaryIO, place: PixelPlace) -> None:
-    """The declared pixel data must lie inside the file; encapsulated data must reach their end mark."""
+def _completed(data: BinaryIO, place: PixelPlace, dataset: Dataset) -> PixelPlace:
+    """The place with its items; the declared pixel data must lie inside the file, encapsulated data reach their end."""
     size = data.seek(0, io.SEEK_END)
+    frames = int(dataset.get("NumberOfFrames") or 1)
+    inflated = size if isinstance(data, io.BytesIO) else 0
     if place.length != UNDEFINED_LENGTH:
-        complete = place.offset + place.length <= size
+        # a header that promises more frames than bytes is not believed
+        complete = place.offset + place.length <= size and place.length >= frames
+        items: tuple[tuple[int, int], ...] | None = ()
     else:
-        complete = _items_complete(data, place.offset, size)
-    if not complete:
+        items = _items(data, place, size, frames)
+        complete = items is not None
+    if not complete or items is None:
         raise corrupt(place.file, "is cut short: pixel data are missing", "CorruptPixelData")
+    return replace(place, inflated=inflated, items=items)
 
 
-def _items_complete(data: BinaryIO, offset: int, size: int) -> bool:
-    """Whether the items of encapsulated pixel data follow each other up to their end mark."""
+def _items(data: BinaryIO, place: PixelPlace, size: int, frames: int) -> tuple[tuple[int, int], ...] | None:
+    """The items of encapsulated pixel data up to their end mark; None where there is no such mark."""
+    items: list[tuple[int, int]] = []
+    offset, cap = place.offset, _MAX_ITEMS + _MAX_ITEMS_PER_FRAME * frames
     while offset + 8 <= size:
         data.seek(offset)
         group, element, length = struct.unpack("<HHL", data.read(8))
         tag = group << 16 | element
         # an end mark, or an item with its own length
         if tag == _SEQUENCE_END:
-            return True
+            return tuple(items) if len(items) > frames else None
         if tag != _ITEM or length == UNDEFINED_LENGTH:
-            return False
+            return None
+        if len(items) == cap:
+            raise _over_limit(place.file, "items of pixel data", f"more than {cap}", cap)
+        items.append((offset + 8, length))
         offset += 8 + length
-    return False
+    return None

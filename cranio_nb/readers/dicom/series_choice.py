@@ -6,14 +6,16 @@ Images belong together when series, size, spacing, orientation and kind of image
 from __future__ import annotations
 
 import re
+from bisect import bisect_left, bisect_right, insort
 from collections import Counter
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ...errors import InputRefused
 from ..load_report import Finding
+from .continuation import DIRECTION_TOL, agree, check_continued
 from .geometry import MAX_STEP_MM, MIN_SLICES, axes_of, bad_geometry, check_geometry, sort_by_height
 from .parse import CT_CLASSES
 from .slice_header import SliceHeader
@@ -21,9 +23,9 @@ from .slice_header import SliceHeader
 _CT = ("CT", "")
 _STRAY = 3  # so few images are a scout or a reference picture, not a scan
 _HEAD_HEIGHT_MM = 150.0  # mm: a taller scan has no advantage over another
-_DIRECTION_TOL = 1e-4
 _MAX_SERIES_NUMBER = 99_999  # a longer one may be anything, a birth date among others
 _SOFT = ("SOFT", "SMOOTH", "STANDARD", "BRAIN", "STND")
+_WEIGHTS = (1.41, 1.73, 2.24, 2.65, 3.32, 3.61, 4.12, 4.36, 4.8)  # any positive numbers that directions do not cancel
 _FOLDER_REMEDY = "Give the folder that holds only the wanted series."
 
 
@@ -111,10 +113,11 @@ def choose_series(headers: list[SliceHeader], allow: Collection[str] = ()) -> tu
     (20, ['SeriesChosen', 'SeriesSkipped'])
     """
     # CT images, in groups that belong together
-    usable, left = _usable(headers, "wrong_modality" in allow)
+    usable, left, others = _usable(headers, "wrong_modality" in allow)
     if not usable:
         raise _nothing_usable(headers, left)
-    groups = _groups(usable)
+    usable, joined = _joined(usable)
+    groups = group_alike(usable)
     placed = [group for group in groups if group[0].orientation is not None and group[0].spacing is not None]
     if not placed:
         check_geometry(usable)
@@ -126,22 +129,38 @@ def choose_series(headers: list[SliceHeader], allow: Collection[str] = ()) -> tu
 
     # of one patient, and whole
     _check_one_person(chosen.headers, "series")
-    _check_rest_of_series(chosen, [g for g in groups if g is not chosen.headers])
+    apart = [g for g in groups if g is not chosen.headers]
+    _check_rest_of_series(chosen, apart)
+    check_continued(chosen.headers, chosen.step, [header for group in apart for header in group] + others)
     rest = [candidate for candidate in candidates if candidate is not chosen]
     strays = [group for group in placed if not any(group is scan for scan in scans)]
-    return chosen.headers, _report(chosen, rest, strays, left)
+    return chosen.headers, joined + _report(chosen, rest, strays, left, others)
 
 
-def _usable(headers: list[SliceHeader], any_modality: bool) -> tuple[list[SliceHeader], Counter[str]]:
-    """Images that may be slices of a CT, and the others counted by reason."""
-    usable, left = [], Counter[str]()
+def _usable(
+    headers: list[SliceHeader], any_modality: bool
+) -> tuple[list[SliceHeader], Counter[str], list[SliceHeader]]:
+    """Images that may be slices of a CT, and the others: counted by reason, and themselves."""
+    usable, left, others = [], Counter[str](), []
     for header in headers:
         reason = _why_not(header, any_modality)
         if reason:
             left[reason] += 1
+            others.append(header)
         else:
             usable.append(header)
-    return usable, left
+    return usable, left, others
+
+
+def _joined(headers: list[SliceHeader]) -> tuple[list[SliceHeader], list[Finding]]:
+    """The images as one series, where each says that it is a series of its own, as some anonymisers leave them."""
+    counts = Counter(header.series for header in headers)
+    single = sum(count == 1 for count in counts.values())
+    if single < MIN_SLICES or max(counts.values()) >= MIN_SLICES:
+        return headers, []
+    message = f"Each of {single} slices says that it is a series of its own; they were read as one series."
+    joined = [replace(header, series="") if counts[header.series] == 1 else header for header in headers]
+    return joined, [Finding("SeriesJoined", "warning", message, {"slices": single})]
 
 
 def _why_not(header: SliceHeader, any_modality: bool) -> str:
@@ -173,37 +192,56 @@ def _nothing_usable(headers: list[SliceHeader], left: Counter[str]) -> InputRefu
 _MODALITIES = {"MR", "PT", "NM", "CR", "DX", "US", "XA", "RF", "MG", "OT", "SC", "SEG", "RTSTRUCT", "RTDOSE"}
 
 
-def _groups(headers: list[SliceHeader]) -> list[list[SliceHeader]]:
-    """Images that belong together, in file order."""
+def group_alike(headers: list[SliceHeader]) -> list[list[SliceHeader]]:
+    """Group images that agree in series, size, kind, orientation and spacing, in file order.
+
+    Parameters
+    ----------
+    headers : list of SliceHeader
+
+    Returns
+    -------
+    list of list of SliceHeader
+
+    Notes
+    -----
+    Each image is compared with those groups only whose geometry is near on one line, found by bisection; so the time
+    grows with the number of images, and not with its square.
+
+    Examples
+    --------
+    >>> from types import SimpleNamespace
+    >>> axial, turned = np.array([1.0, 0, 0, 0, 1, 0]), np.array([0, 1.0, 0, 0, 0, 1])
+    >>> common = {"series": "1", "rows": 4, "cols": 4, "modality": "CT", "image_type": (), "spacing": np.ones(2)}
+    >>> images = [SimpleNamespace(orientation=v, **common) for v in (axial, turned, axial + 1e-6)]
+    >>> [len(group) for group in group_alike(images)]
+    [2, 1]
+    """
     groups: list[list[SliceHeader]] = []
+    near: dict[object, list[tuple[float, int, tuple[float, ...]]]] = {}
     for header in headers:
-        for group in groups:
-            if _belong_together(group[0], header):
-                group.append(header)
+        # the first three values say original/derived, primary/secondary and axial/localizer; later ones may vary
+        kind = (header.series, header.rows, header.cols, header.modality, header.image_type[:3])
+        known = near.setdefault((*kind, header.orientation is None, header.spacing is None), [])
+        numbers = _numbers(header)
+        at = sum(weight * number for weight, number in zip(_WEIGHTS, numbers, strict=False))
+        reach = 1.01 * DIRECTION_TOL * sum(w * (1 + abs(n)) for w, n in zip(_WEIGHTS, numbers, strict=False))
+        low, high = bisect_left(known, (at - reach, -1, ())), bisect_right(known, (at + reach, len(headers), ()))
+        for _, group, first in known[low:high]:
+            if all(abs(a - b) <= DIRECTION_TOL * (1 + abs(b)) for a, b in zip(first, numbers, strict=True)):
+                groups[group].append(header)
                 break
         else:
+            insort(known, (at, len(groups), numbers))
             groups.append([header])
     return groups
 
 
-def _belong_together(a: SliceHeader, b: SliceHeader) -> bool:
-    """Whether two images agree in series, size, kind, orientation and spacing."""
-    # the first three values say original/derived, primary/secondary and axial/localizer; later ones may vary in a scan
-    same = (a.series, a.rows, a.cols, a.modality, a.image_type[:3]) == (
-        b.series,
-        b.rows,
-        b.cols,
-        b.modality,
-        b.image_type[:3],
-    )
-    return same and _close(a.orientation, b.orientation) and _close(a.spacing, b.spacing)
-
-
-def _close(a: np.ndarray | None, b: np.ndarray | None) -> bool:
-    """Whether two vectors agree within rounding; absent ones agree with each other only."""
-    if a is None or b is None:
-        return a is b
-    return bool(np.allclose(a, b, rtol=_DIRECTION_TOL, atol=_DIRECTION_TOL, equal_nan=True))
+def _numbers(header: SliceHeader) -> tuple[float, ...]:
+    """An image's orientation and spacing in one; what is no number is a number that none has."""
+    parts = [part for part in (header.orientation, header.spacing) if part is not None]
+    values = np.concatenate([*parts, [0.0]])
+    return tuple(np.where(np.isfinite(values), values, 1e9).tolist())
 
 
 def _candidate(group: list[SliceHeader]) -> Candidate:
@@ -322,7 +360,7 @@ def _check_rest_of_series(chosen: Candidate, others: list[list[SliceHeader]]) ->
         # a part without geometry cannot be told from the rest
         if group[0].orientation is None or group[0].spacing is None:
             check_geometry(group)
-        if not _close(group[0].orientation, first.orientation):
+        if not agree(group[0].orientation, first.orientation):
             continue
         check_geometry(group)
         if len(group) > _STRAY:
@@ -330,21 +368,30 @@ def _check_rest_of_series(chosen: Candidate, others: list[list[SliceHeader]]) ->
 
 
 def _report(
-    chosen: Candidate, rest: list[Candidate], strays: list[list[SliceHeader]], left: Counter[str]
+    chosen: Candidate,
+    rest: list[Candidate],
+    strays: list[list[SliceHeader]],
+    left: Counter[str],
+    others: list[SliceHeader],
 ) -> list[Finding]:
     """What was chosen, and what was left and why."""
     first = chosen.headers[0]
     values = {"slices": len(chosen.headers), "step_mm": round(chosen.step, 4), "series": chosen.number}
     findings = [Finding("SeriesChosen", "info", f"Read {chosen.label}.", values)]
-    findings += [Finding("SeriesSkipped", "info", f"Left {c.label}.", {"slices": len(c.headers)}) for c in rest]
-    for group in strays:
-        same = group[0].series == first.series
-        count = len(group)
-        message = f"Left {count} image{'s' * (count > 1)} that fit no stack."
-        findings.append(Finding("ImagesSkipped", "warning" if same else "info", message, {"images": count}))
+    findings += [Finding("SeriesSkipped", "info", f"Left {c.label}.", {"slices": len(c.headers)}) for c in rest[:20]]
+    if len(rest) > 20:
+        findings.append(Finding("SeriesSkipped", "info", f"Left {len(rest) - 20} more series.", {}))
+    for same in (True, False):
+        count = sum(len(group) for group in strays if (group[0].series == first.series) == same)
+        if count:
+            message = f"Left {count} image{'s' * (count > 1)} that fit no stack."
+            findings.append(Finding("ImagesSkipped", "warning" if same else "info", message, {"images": count}))
     if first.modality not in _CT or first.sop_class not in CT_CLASSES:
         findings.append(Finding("WrongModality", "warning", "The images are not CT; they were read as allowed.", {}))
     if left:
         listed = ", ".join(f"{reason}: {count}" for reason, count in sorted(left.items()))
-        findings.append(Finding("ImagesSkipped", "info", f"Left images that are no CT slices ({listed}).", dict(left)))
+        severity = "warning" if any(header.series == first.series for header in others) else "info"
+        findings.append(
+            Finding("ImagesSkipped", severity, f"Left images that are no CT slices ({listed}).", dict(left))
+        )
     return findings

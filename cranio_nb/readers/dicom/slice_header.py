@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydicom.dataset import Dataset
 
-from .parse import PixelPlace, refusing
+from .parse import OVERLAY_BITS, PixelPlace, refusing
 
 Vector = NDArray[np.float64]
 
@@ -52,14 +52,17 @@ class SliceHeader:
         mm between rows, and between columns.
     slope, intercept : float or None
         HU = stored * slope + intercept.
+    tilt : float or None
+        Degrees by which the gantry is said to be tilted.
     padding : tuple of float or None
         Closed range of stored values that mean "outside the field of view".
     samples : int
         Numbers a pixel.
     bits : tuple of int
         Allocated, stored, and the highest of the stored, counted from 0.
-    signed, has_lut, lossy : bool
-        Whether stored numbers have a sign; HU are given by a table; the pixels were compressed with loss.
+    signed, has_lut, lossy, overlay : bool
+        Whether stored numbers have a sign; HU are given by a table; the pixels were compressed with loss; bits of
+        the pixels hold graphics.
     """
 
     file: int
@@ -87,6 +90,7 @@ class SliceHeader:
     slope: float | None
     intercept: float | None
     rescale_type: str
+    tilt: float | None
     padding: tuple[float, float] | None
     samples: int
     photometric: str
@@ -94,6 +98,7 @@ class SliceHeader:
     signed: bool
     has_lut: bool
     lossy: bool
+    overlay: bool
 
 
 def read_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
@@ -130,6 +135,30 @@ def read_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[
     """
     with refusing(file):
         return _headers_of(dataset, place, file)
+
+
+def count_frames(dataset: Dataset, file: int) -> int:
+    """Count the images that a file declares, before a header is made for each.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Its elements, from `parse.parse_file`.
+    file : int
+        Index among the folder's files.
+
+    Returns
+    -------
+    int
+        0 for a file without images.
+
+    Examples
+    --------
+    >>> count_frames(Dataset(), 0)
+    0
+    """
+    with refusing(file):
+        return int(dataset.get("NumberOfFrames") or 1) if "Rows" in dataset and "Columns" in dataset else 0
 
 
 def _headers_of(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
@@ -175,6 +204,7 @@ def _common(dataset: Dataset, place: PixelPlace | None, file: int, frames: int) 
         "signed": _int(dataset, "PixelRepresentation") == 1,
         "has_lut": "ModalityLUTSequence" in dataset,
         "lossy": _text(dataset, "LossyImageCompression") == "01",
+        "overlay": any(tag in dataset for tag in OVERLAY_BITS),
     }
 
 
@@ -195,6 +225,7 @@ def _placement(dataset: Dataset, groups: list[Dataset | None], frame: int) -> di
         "thickness": _float(measures, "SliceThickness"),
         "slope": _float(rescale, "RescaleSlope"),
         "intercept": _float(rescale, "RescaleIntercept"),
+        "tilt": _float(source("CTAcquisitionDetailsSequence"), "GantryDetectorTilt"),
         "rescale_type": _text(rescale, "RescaleType"),
         "image_type": frame_type or _texts(dataset, "ImageType"),
         "instance": _int(dataset, "InstanceNumber") if groups == [None, None] else frame,

@@ -87,7 +87,7 @@ def _flat_fill(
     # only the shown plane is voxelised, and the outer nodes measured where the truth is known
     made = you.fill_between(bone, opening, you.find_guides(radius_map, n))
     slab = bone.crop((slice(plane, plane + 1), slice(0, bone.shape[1]), slice(0, bone.shape[2])))
-    patch = mesh_to_voxels.inside(made.solid, slab)[0] & ~slab.voxels[0]
+    patch = mesh_to_voxels.fill_mesh(made.solid, slab)[0] & ~slab.voxels[0]
     nodes = made.outer.mesh.vertices
     off = np.zeros(0) if truth is None else mesh_distances.surface_distance(nodes, truth.surface(OUTER))
     return FlatFill(made, _from_outside(made, opening.direction), patch, off)

@@ -43,7 +43,7 @@ def test_things_that_are_no_images_are_skipped_and_counted(tmp_path: Path) -> No
     volume, report = read_ct(folder)
     np.testing.assert_array_equal(volume.voxels, head())
     skipped = {k: v for f in report.findings for k, v in f.values.items()}
-    assert (skipped["not_dicom"], skipped["link"], skipped["special file"], skipped["empty file"]) == (3, 2, 1, 1)
+    assert (skipped["not_dicom"], skipped["link"], skipped["special file"], skipped["empty"]) == (3, 2, 1, 1)
 
 
 def test_files_are_listed_by_name_down_to_a_depth(tmp_path: Path) -> None:

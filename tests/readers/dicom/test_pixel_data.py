@@ -6,9 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import head, patch, refusal, save, series
+from dicom_series import edit, head, patch, refusal, save, series
+from pydicom.encaps import encapsulate, get_frame
+from pydicom.uid import DeflatedExplicitVRLittleEndian, RLELossless
 
 from cranio_nb.readers import read_ct
+from cranio_nb.readers.dicom import pixel_data
+from cranio_nb.readers.dicom.parse import open_dataset, parse_file
+from cranio_nb.readers.dicom.pixel_data import read_stack
+from cranio_nb.readers.dicom.slice_header import read_headers
 
 SMALL = (9, 22, 26)
 
@@ -29,8 +35,62 @@ def test_rubbish_above_the_stored_bits_is_ignored(signed: bool, tmp_path: Path) 
         stored = np.frombuffer(ds.PixelData, "<u2").copy()
         stored ^= (np.arange(stored.size) % 16 << 12).astype("<u2")
         ds.PixelData = stored.tobytes()
-    volume, _ = read_ct(save(tmp_path / "scan", datasets))
+    volume, report = read_ct(save(tmp_path / "scan", datasets))
     np.testing.assert_array_equal(volume.voxels, hu)
+    assert ("UnusedBits", "corrected") in {(f.code, f.severity) for f in report.findings}
+
+
+@pytest.mark.parametrize("signed", [False, True])
+@pytest.mark.parametrize("which", [slice(None), slice(5, 6)])
+def test_numbers_that_need_more_bits_than_declared_are_refused(signed: bool, which: slice, tmp_path: Path) -> None:
+    datasets = series(head(SMALL), bits=12, signed=signed, intercept=0 if signed else -1024)
+    edit(which, BitsStored=10, HighBit=9)(datasets)
+    assert refusal(save(tmp_path / "scan", datasets)).code == "CorruptPixelData"
+
+
+@pytest.mark.parametrize("extra", [1, 3, 10, 40])
+def test_some_bytes_behind_the_pixels_are_left_with_a_warning(extra: int, tmp_path: Path) -> None:
+    hu = head(SMALL)
+    datasets = series(hu)
+    for ds in datasets:
+        ds.PixelData += bytes(extra)
+    volume, report = read_ct(save(tmp_path / "scan", datasets))
+    np.testing.assert_array_equal(volume.voxels, hu)
+    assert [f.code for f in report.findings if f.severity == "warning"] == ["ExcessPixels"]
+
+
+@pytest.mark.parametrize("change", [{"Rows": SMALL[1] - 1}, {"Columns": SMALL[2] - 1}, {"Columns": SMALL[2] - 2}])
+def test_a_row_or_a_column_too_few_is_refused(change: dict[str, int], tmp_path: Path) -> None:
+    datasets = series(head(SMALL))
+    edit(slice(None), **change)(datasets)
+    assert refusal(save(tmp_path / "scan", datasets)).code == "CorruptPixelData"
+
+
+def test_a_run_that_is_longer_than_the_image_is_a_warning(tmp_path: Path) -> None:
+    hu = head(SMALL)
+    datasets = series(hu)
+    for ds in datasets:
+        ds.compress(RLELossless, encoding_plugin="pydicom", generate_instance_uid=False)
+    frame = get_frame(datasets[4].PixelData, 0, number_of_frames=1)
+    datasets[4].PixelData = encapsulate([frame + bytes.fromhex("0701020304050607080708")])
+    volume, report = read_ct(save(tmp_path / "scan", datasets))
+    np.testing.assert_array_equal(volume.voxels, hu)
+    assert "DecoderRemarks" in {f.code for f in report.findings}
+
+
+def test_a_deflated_file_of_many_frames_is_inflated_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    hu = head((60, 22, 26))
+    datasets = series(hu)
+    whole = datasets[0]
+    whole.NumberOfFrames, whole.PixelData = len(hu), b"".join(ds.PixelData for ds in datasets)
+    folder = save(tmp_path / "scan", [whole], syntax=DeflatedExplicitVRLittleEndian)
+    parsed = parse_file(folder / "image0000.dcm", 0)
+    assert parsed is not None
+    opened = []
+    monkeypatch.setattr(pixel_data, "open_dataset", lambda *a: opened.append(1) or open_dataset(*a))
+    stored = dict(read_stack(read_headers(*parsed, 0)))
+    np.testing.assert_array_equal(np.stack([stored[k] for k in range(60)]).astype(int) - 1024, hu)
+    assert len(opened) == 1
 
 
 @pytest.mark.parametrize("syntax", ["1.2.840.10008.1.2.4.80", "1.2.840.10008.1.2.4.90", "1.2.840.10008.1.2.5"])

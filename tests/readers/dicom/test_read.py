@@ -106,3 +106,20 @@ def test_two_readings_are_the_same(tmp_path: Path) -> None:
     folder = save(tmp_path / "scan", series(head(SMALL)))
     (a, _), (b, _) = read_ct(folder), read_ct(folder)
     assert same_grid(a, b) and np.array_equal(a.voxels, b.voxels)
+
+
+@pytest.mark.parametrize(("stated", "warned"), [(12.0, True), (-12.0, True), (0.0, False), (0.5, False)])
+def test_a_tilt_that_only_the_tag_states_is_a_warning(stated: float, warned: bool, tmp_path: Path) -> None:
+    datasets = series(head())
+    edit(slice(None), GantryDetectorTilt=stated)(datasets)
+    _, report = read_ct(save(tmp_path / "scan", datasets))
+    assert ("TiltUnclear" in {f.code for f in report.findings}) == warned
+
+
+def test_a_tilt_that_the_positions_show_is_corrected_without_a_warning(tmp_path: Path) -> None:
+    lean = np.radians(12.0)
+    tilted = (1.0, 0.0, 0.0, 0.0, np.cos(lean), -np.sin(lean))
+    datasets = series(head(), orientation=tilted, direction=(0, 0, 1))
+    edit(slice(None), GantryDetectorTilt=12.0)(datasets)
+    _, report = read_ct(save(tmp_path / "scan", datasets))
+    assert [f.code for f in report.findings if f.severity != "info"] == ["GantryTilt"]

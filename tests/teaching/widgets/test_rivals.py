@@ -33,7 +33,7 @@ def test_the_found_plane_has_the_least_residual(static, skull, openings):
     moves = ({}, {"turn_deg": 4.0}, {"turn_deg": 0.0, "lean_deg": -5.0}, {"lean_deg": 0.0, "shift_mm": 3.0})
     lines = [panel.set(**move).view.line for move in moves]
     least, *others = (float(line.split("residual ")[1].split(" mm")[0]) for line in lines)
-    assert least == pytest.approx(found.residual, abs=0.01)
+    assert least == pytest.approx(found.residual_mm, abs=0.01)
     assert all(other > 2 * least for other in others)
 
 

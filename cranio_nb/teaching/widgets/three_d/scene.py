@@ -56,8 +56,8 @@ def thin_rays(radius_map: RadiusMap, every: int) -> RadiusMap:
         Its hole holds the hole of the finer map.
     """
     shown = [np.where(radius_map.hole, np.nan, radius) for radius in (radius_map.outer, radius_map.inner)]
-    outer, inner = (thin_plate.thinned(radius, every) for radius in shown)
-    hole = thin_plate.thinned(radius_map.hole.astype(float), every) > _ANY
+    outer, inner = (thin_plate.thin_map(radius, every) for radius in shown)
+    hole = thin_plate.thin_map(radius_map.hole.astype(float), every) > _ANY
     grid = replace(radius_map.grid, step_rad=radius_map.grid.step_rad * every, n=len(outer))
     return replace(radius_map, grid=grid, outer=outer, inner=inner, hole=hole)
 
@@ -84,7 +84,7 @@ def make_scene(fine: RadiusMap, bone: Volume, truth: Prosthesis | None, every: i
     if truth is None or truth.patch is None:
         return Scene(radius_map, np.where(radius_map.hole, np.nan, radius_map.outer))
     whole = radius_measurement.measure_along(fine, bone.with_voxels(bone.voxels | truth.patch.voxels))
-    return Scene(radius_map, thin_plate.thinned(whole.outer, every))
+    return Scene(radius_map, thin_plate.thin_map(whole.outer, every))
 
 
 def error_line(off: Array) -> str:
