@@ -82,10 +82,6 @@ def read_ct(
         path = Path(path)
         if not path.exists():
             raise InputRefused("NotFound", "There is no such file or folder.", "Check the path.")
-        if path.is_file() and path.name.lower() == "dicomdir":
-            message = "A DICOMDIR is the table of contents of a folder and holds no images."
-            raise InputRefused("FileIndex", message, "Give the folder that it lies in.")
-
         if path.is_file():
             _check_not_packed(path)
         # each format's library is loaded only where it is needed
