@@ -52,6 +52,10 @@ class HeadShape:
     foramen: float = 0.3
     cutters: tuple[Cutter, ...] = ()
 
+    def upright(self, affine: Array) -> Array:
+        """The affine of a scan in which the head stands upright, shape (4, 4): this head always does."""
+        return affine
+
     def outer_radius(self, directions: ArrayLike) -> Array:
         """Distance of the outer skull surface from the centre along rays.
 

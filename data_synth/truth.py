@@ -155,23 +155,28 @@ def gaps_in_slice(head: HeadShape, affine: Array, plane: float) -> tuple[SliceTr
     head : HeadShape
         With its cutters.
     affine : ndarray, shape (4, 4)
-        Voxel (plane, row, col) -> world mm; planes may lean, but not along the head's axis.
+        Voxel (plane, row, col) -> world mm.
     plane : float
         Plane index.
 
     Returns
     -------
     tuple of SliceTruth
-        In the order of the defects; empty where none takes bone.
+        In the order of the defects; empty where none takes bone, and for planes that stand steeper than 75 degrees in
+        the head: there the skull is no ring about its axis.
 
     Notes
     -----
     A defect that crosses the slice's ring twice (only near the vertex) is reported by its widest gap. Where the
     defect takes the whole ring, both surfaces count as whole: such a slice has no ends.
     """
+    upright = head.upright(affine)
+    normal = np.cross(upright[:3, 1], upright[:3, 2])
+    if abs(normal[2]) < np.cos(np.deg2rad(75)) * np.linalg.norm(normal):
+        return ()
     truths = []
     for defect in range(len(head.cutters)):
-        outer, inner = (_gap(_Plane(head, affine, plane, surface), defect) for surface in (0, 1))
+        outer, inner = (_gap(_Plane(head, upright, plane, surface), defect) for surface in (0, 1))
         if outer or inner:
             truths.append(SliceTruth(float(plane), defect, outer, inner))
     return tuple(truths)

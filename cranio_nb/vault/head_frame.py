@@ -29,6 +29,7 @@ from .orientation import head_axes
 
 Array = NDArray[np.float64]
 
+_STRAIGHT_DEG = 35.0  # of rotation that the symmetry plane and the mean head are found in spite of
 SURE = 0.5
 """Least confidence at which the axes are used."""
 
@@ -196,8 +197,8 @@ def even_directions(n: int) -> Array:
 
     Examples
     --------
-    >>> even_directions(100).mean(axis=0).round(2)
-    array([-0.,  0.,  0.])
+    >>> np.abs(even_directions(100).mean(axis=0)).max() < 0.01
+    np.True_
     """
     i = np.arange(n) + 0.5
     z, turn = 1 - 2 * i / n, np.pi * (1 + np.sqrt(5)) * i
@@ -353,7 +354,10 @@ def _long_axis(walls: Walls, normal: Array, face: Array, ahead: Array) -> float:
 
 
 def head_or_grid_axes(bone: Volume) -> Array:
-    """The head's axes where the bone shows them, else those of the grid.
+    """The axes of the grid where the head lies straight enough on it, else its own, where the bone shows them.
+
+    What is measured along rays about the vertex bears a turned head, but moves a little with the axes it is measured
+    in, and those of the grid do not change when a hole is cut.
 
     Parameters
     ----------
@@ -365,7 +369,11 @@ def head_or_grid_axes(bone: Volume) -> Array:
     ndarray, shape (3, 3)
         Rows: left, back and up, orthonormal, world.
     """
+    grid_axes = head_axes(bone)
     try:
-        return find_head_frame(bone).trusted_axes
+        axes = find_head_frame(bone).trusted_axes
     except InputRefused:
-        return head_axes(bone)
+        return grid_axes
+    # the angle of the rotation from one to the other follows from its trace
+    turn_deg = np.degrees(np.arccos(np.clip((np.trace(axes @ grid_axes.T) - 1) / 2, -1, 1)))
+    return axes if turn_deg > _STRAIGHT_DEG else grid_axes

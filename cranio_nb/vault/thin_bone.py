@@ -9,6 +9,9 @@ is not lost: the excess over its surroundings, summed along a ray across it, is 
 
 m the medium in the head (brain, or air in a dry skull) and B the median HU of its bone, is the thickness of the bone
 in mm. Where a piece was cut out, t is 0. A mask gives the same with 0 and 1 for m and B, blended between its voxels.
+
+In a dry skull m is air, and a hole may be closed by skin, gel or plastic that is denser: a ray that meets a layer of
+soft tissue and nothing denser meets no bone. Thin bone blurred with air passes the same HU, but on its flanks only.
 """
 
 from __future__ import annotations
@@ -26,6 +29,8 @@ Array = NDArray[np.float64]
 
 _BELOW_MM, _STEP_MM = 12.0, 0.75  # the expected outer surface, and between samples
 _MARGIN_HU = 100.0  # above the medium up to which soft tissue and noise count for nothing
+_SOFT_HU = 150.0  # about water: fat has -100 HU, clotted blood, the densest soft tissue, less than 100
+_LAYER_MM = 3.0  # of soft tissue: thinner than any scalp, wider than the flanks of a blurred wall
 _INSIDE_MM = np.array([5.0, 15.0, 25.0, 35.0])  # from the head's centre, where the medium is measured
 
 
@@ -104,6 +109,9 @@ class Material:
             cval=self.medium,
         )
         excess = np.minimum(values, self.bone) - self.medium  # metal counts no more than bone
-        return np.asarray(
-            np.where(excess > self.margin, excess, 0.0).sum(axis=1) * _STEP_MM / (self.bone - self.medium)
-        )
+        thickness = np.where(excess > self.margin, excess, 0.0).sum(axis=1) * _STEP_MM / (self.bone - self.medium)
+        if self.volume.voxels.dtype == bool:
+            return thickness
+        # soft tissue is no bone, also where the head is full of air
+        layer_mm = (np.abs(values) < _SOFT_HU).sum(axis=1) * _STEP_MM
+        return np.where((values.max(axis=1) < _SOFT_HU) & (layer_mm >= _LAYER_MM), 0.0, thickness)

@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..head import HeadShape, head_shape, lengths
-from ..truth import SliceTruth, gaps_in_slice
 from .pose import rigid
 
 Array = NDArray[np.float64]
@@ -141,27 +140,9 @@ class Braincase(HeadShape):
         """
         return lengths(self.gradients(offsets)[0])
 
-    def slice_truth(self, affine: Array, plane: float) -> tuple[SliceTruth, ...]:
-        """Every gap the defects leave in one plane of a scan.
-
-        Parameters
-        ----------
-        affine : ndarray, shape (4, 4)
-            Voxel (plane, row, col) -> world mm of the scan.
-        plane : float
-            Plane index.
-
-        Returns
-        -------
-        tuple of SliceTruth
-            Empty for planes that stand steeper than 75 degrees in the head: there the skull is no ring about its
-            axis.
-        """
-        still = affine if self.rotation is None else rigid(self.rotation.T, self.centre) @ affine
-        normal = np.cross(still[:3, 1], still[:3, 2])
-        if abs(normal[2]) < np.cos(np.deg2rad(75)) * np.linalg.norm(normal):
-            return ()
-        return gaps_in_slice(self, still, plane)
+    def upright(self, affine: Array) -> Array:
+        """The affine of a scan as if the head had not been posed, shape (4, 4)."""
+        return affine if self.rotation is None else rigid(self.rotation.T, self.centre) @ affine
 
     def suture_distance(self, offsets: Array) -> Array:
         """Distance from the nearest suture.

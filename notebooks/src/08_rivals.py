@@ -221,7 +221,7 @@ rivals = {"hull": sheet, "You et al.": flat, "reflection": copies["our head", Tr
 rivals["slice method"] = cn.design(bone, openings)
 print("                outer mean   max   inner mean   max    Dice  HD95 (mm)")
 for name, made in rivals.items():
-    seen = against_truth.against(made, true, bone)
+    seen = against_truth.measure_against(made, true, bone)
     out, inn = seen.table3["outer"], seen.table3["inner"]
     print(f"{name:14} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
     print(f" {seen.score.dice:7.3f} {seen.score.hd95:6.2f}")

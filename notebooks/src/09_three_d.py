@@ -260,7 +260,7 @@ over = {name: cn.design(skull, largest, method=m, smooth=False) for name, m in m
 # %% tags=["nbval-check-output"]
 print("              outer mean   max   inner mean   max    Dice    large: Dice  HD95 (mm)")
 for name, one in made.items():
-    seen = against_truth.against(one, true, bone)
+    seen = against_truth.measure_against(one, true, bone)
     out, inn = seen.table3["outer"], seen.table3["inner"]
     print(f"{name:12} {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}", end="")
     large = cn.score(over[name].patch, wide.truth, skull)

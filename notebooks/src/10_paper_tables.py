@@ -126,7 +126,9 @@ designs = {name: cn.design(bone, openings, **options) for name, options in ways.
 
 # %%
 true = against_truth.true_prosthesis(case.truth, bone, openings[0].head_centre)
-seen = {name: against_truth.against(design, true, bone) for name, design in designs.items()}
+seen = {
+    name: against_truth.measure_against(design, true, bone) for name, design in designs.items()
+}
 
 
 def print_row(name, top, inner=None):

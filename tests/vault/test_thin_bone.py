@@ -33,6 +33,21 @@ def test_soft_tissue_is_no_bone():
     assert material.thickness(np.zeros(3), RAYS, np.array([60.0]), above_mm=2.0) == 0
 
 
+@pytest.mark.parametrize("soft_hu", [-90.0, 0.0, 45.0, 95.0])
+def test_soft_tissue_in_a_head_full_of_air_is_no_bone(soft_hu):
+    """A dry skull whose hole is closed by skin, gel or plastic."""
+    material = Material(plate(7.0, 1.0, medium=-1000.0, bone=soft_hu), -1000.0, 1400.0, 100.0)
+    assert material.thickness(np.zeros(3), RAYS, np.array([66.0]), above_mm=5.0) == 0
+
+
+@pytest.mark.parametrize("spacing", [1.0, 2.5])
+def test_thin_bone_in_a_head_full_of_air_is_bone(spacing):
+    """Blurred to the HU of soft tissue, but nowhere a layer of it."""
+    material = Material(plate(0.45 * spacing, spacing, medium=-1000.0, bone=1400.0), -1000.0, 1400.0, 100.0)
+    found = material.thickness(np.zeros(3), RAYS, np.array([60.5]), above_mm=9.0)
+    assert found == pytest.approx(0.45 * spacing, abs=0.25)
+
+
 def test_metal_counts_no_more_than_bone():
     loud = Material(plate(2.0, 1.0, bone=3000.0), 40.0, 900.0, 0.0)
     assert loud.thickness(np.zeros(3), RAYS, np.array([61.0]), above_mm=5.0) <= 3.0
