@@ -147,10 +147,11 @@ def _compact(hu: NDArray) -> NDArray:
     info = np.iinfo(np.int16)
     if info.min <= hu.min() and hu.max() <= info.max:
         whole = hu.astype(np.int16)
-        if hu.dtype.kind in "iu" or np.array_equal(whole, hu):
+        # plane by plane, so that no second volume is made for the comparison
+        if hu.dtype.kind in "iu" or all(map(np.array_equal, whole.T, hu.T)):
             return whole
     with np.errstate(over="ignore"):
-        return hu.astype(np.float32)
+        return hu.astype(np.float32, copy=False)
 
 
 def _finish(image: Image, voxels: NDArray, findings: list[Finding]) -> tuple[Volume, LoadReport]:

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO
+from typing import BinaryIO, cast
 
 from pydicom.datadict import tag_for_keyword
 from pydicom.dataset import Dataset
@@ -66,7 +66,7 @@ class PixelPlace:
     is_float : bool
         Whether they are floating-point numbers.
     inflated : int
-        Bytes of the data set once inflated; 0 where it is not deflated.
+        Bytes that were inflated to find this place; 0 where it is not deflated.
     items : tuple of (int, int)
         Offset and bytes of each item of encapsulated data, the table of offsets first; else empty.
     """
@@ -210,12 +210,7 @@ def open_dataset(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
     meta : Dataset
         Elements of group 2.
     stream : binary stream
-        At the first element of the data set; in memory and inflated, where the file is deflated.
-
-    Raises
-    ------
-    InputRefused
-        ``LimitExceeded`` for more than `MAX_INFLATED` bytes.
+        At the first element of the data set; `Inflated`, where the file is deflated.
     """
     stream.seek(128)
     # without preamble the elements begin at once
@@ -225,11 +220,95 @@ def open_dataset(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
     # deflated: everything behind the meta elements is one packed stream
     if meta.get("TransferSyntaxUID") != DeflatedExplicitVRLittleEndian:
         return meta, stream
-    inflate = zlib.decompressobj(-zlib.MAX_WBITS)
-    inflated = inflate.decompress(stream.read(), MAX_INFLATED)
-    if inflate.unconsumed_tail:
-        raise _over_limit(file, "bytes once inflated", f"more than {MAX_INFLATED}", MAX_INFLATED)
-    return meta, io.BytesIO(inflated)
+    return meta, cast(BinaryIO, Inflated(stream, file))
+
+
+class Inflated:
+    """A packed stream as the bytes it holds, inflated no farther than it is read.
+
+    Parameters
+    ----------
+    stream : binary stream
+        At the start of the packed data; it must stay open.
+    file : int
+        Index among the folder's files.
+
+    Examples
+    --------
+    >>> packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
+    >>> data = Inflated(io.BytesIO(packer.compress(bytes(10**7) + b"end") + packer.flush()), 0)
+    >>> len(data.read(2)), data.tell(), data.size < 10**6
+    (2, 2, True)
+    """
+
+    def __init__(self, stream: BinaryIO, file: int) -> None:
+        self._stream, self._file = stream, file
+        self._packer = zlib.decompressobj(-zlib.MAX_WBITS)
+        self._bytes = bytearray()
+        self._at = 0
+
+    @property
+    def size(self) -> int:
+        """Bytes inflated so far."""
+        return len(self._bytes)
+
+    def read(self, count: int) -> bytes:
+        """Read bytes.
+
+        Parameters
+        ----------
+        count : int
+            How many at most.
+
+        Returns
+        -------
+        bytes
+            Fewer at the end.
+
+        Raises
+        ------
+        InputRefused
+            ``LimitExceeded`` for more than `MAX_INFLATED` bytes from the start.
+        """
+        end = self._at + count
+        if end > MAX_INFLATED:
+            raise _over_limit(self._file, "bytes once inflated", f"more than {MAX_INFLATED}", MAX_INFLATED)
+        while len(self._bytes) < end:
+            packed = self._packer.unconsumed_tail or self._stream.read(2**16)
+            if not packed:
+                break
+            self._bytes += self._packer.decompress(packed, max(end - len(self._bytes), 2**16))
+        part = bytes(self._bytes[self._at : end])
+        self._at = min(end, max(self._at, len(self._bytes)))
+        return part
+
+    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
+        """Go to a place, counted from the start or from here.
+
+        Parameters
+        ----------
+        offset : int
+            Bytes.
+        whence : int
+            `io.SEEK_SET` or `io.SEEK_CUR`.
+
+        Returns
+        -------
+        int
+            The place.
+        """
+        self._at = offset + (self._at if whence == io.SEEK_CUR else 0)
+        return self._at
+
+    def tell(self) -> int:
+        """Where the next byte is read.
+
+        Returns
+        -------
+        int
+            Bytes from the start.
+        """
+        return self._at
 
 
 def _parse_stream(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace | None]:
@@ -256,12 +335,19 @@ def _parse_stream(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, Pix
 
 def _check_end(data: BinaryIO, meta: Dataset, dataset: Dataset, file: int) -> None:
     """A file without pixel data must end where its last element does, and must not be one that has an image."""
-    position, size = data.tell(), data.seek(0, io.SEEK_END)
-    if position != size or _last_is_cut(meta) or _last_is_cut(dataset):
+    if not _ends_here(data) or _last_is_cut(meta) or _last_is_cut(dataset):
         raise corrupt(file, "ends in the middle of an element")
     sop_class = dataset.get("SOPClassUID") or meta.get("MediaStorageSOPClassUID") or ""
     if "Rows" not in dataset and sop_class in CT_CLASSES:
         raise corrupt(file, "ends before its image")
+
+
+def _ends_here(data: BinaryIO) -> bool:
+    """Whether a stream ends where it stands, and not before or behind."""
+    position = data.tell()
+    if isinstance(data, Inflated):
+        return not data.read(1) and data.size == position
+    return position == data.seek(0, io.SEEK_END)
 
 
 def _last_is_cut(dataset: Dataset) -> bool:
@@ -290,9 +376,13 @@ def _over_limit(file: int, what: str, declared: object, cap: int) -> InputRefuse
 
 def _completed(data: BinaryIO, place: PixelPlace, dataset: Dataset) -> PixelPlace:
     """The place with its items; the declared pixel data must lie inside the file, encapsulated data reach their end."""
-    size = data.seek(0, io.SEEK_END)
     frames = int(dataset.get("NumberOfFrames") or 1)
-    inflated = size if isinstance(data, io.BytesIO) else 0
+    if isinstance(data, Inflated):
+        # whether all is there shows when it is read: nothing is inflated before it is wanted
+        if place.length == UNDEFINED_LENGTH or place.length < frames:
+            raise corrupt(place.file, "is cut short: pixel data are missing", "CorruptPixelData")
+        return replace(place, inflated=data.size)
+    size = data.seek(0, io.SEEK_END)
     if place.length != UNDEFINED_LENGTH:
         # a header that promises more frames than bytes is not believed
         complete = place.offset + place.length <= size and place.length >= frames
@@ -302,7 +392,7 @@ def _completed(data: BinaryIO, place: PixelPlace, dataset: Dataset) -> PixelPlac
         complete = items is not None
     if not complete or items is None:
         raise corrupt(place.file, "is cut short: pixel data are missing", "CorruptPixelData")
-    return replace(place, inflated=inflated, items=items)
+    return replace(place, items=items)
 
 
 def _items(data: BinaryIO, place: PixelPlace, size: int, frames: int) -> tuple[tuple[int, int], ...] | None:

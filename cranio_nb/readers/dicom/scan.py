@@ -160,7 +160,15 @@ def _damaged(path: Path, index: int, error: InputRefused) -> Unread:
         except Exception:
             # what was read until here is all that the file says
             pass
-    return Unread(index, path, path.stat().st_size, error, claims["class"], claims["modality"], claims["series"])
+    return Unread(
+        index,
+        path,
+        path.stat().st_size,
+        error.with_traceback(None),
+        claims["class"],
+        claims["modality"],
+        claims["series"],
+    )
 
 
 def _add_claim(element: Any, claims: dict[str, str]) -> None:
