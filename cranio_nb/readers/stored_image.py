@@ -18,7 +18,7 @@ from .load_report import Finding
 MAX_VOXELS = 2**30
 MAX_BYTES = 2**31  # of voxels as stored
 GZIP_PACKING, BZIP2_PACKING = 1032, 10**6  # how many times smaller data become at most
-_SUSPECT_PACKING, _SUSPECT_BYTES = 900, 2**28  # no head is packed so well; small masks may be
+_LARGE_BYTES, _EMPTY_PACKING = 2**28, 1020  # a mask of a skull of that size is packed up to 900 times, zeros 1030 times
 _BLOCK = 2**24  # bytes read at once
 _MAX_REST_BYTES = 2**26  # bytes
 
@@ -116,8 +116,8 @@ def check_promise(count: int, stored: int, *, packing: int) -> None:
     if count > stored * packing:
         message = f"The file is cut short: its {stored} bytes cannot hold {count} bytes of voxels."
         raise InputRefused("CorruptFile", message, "Copy the file again from its source.")
-    if packing > 1 and count > _SUSPECT_BYTES and count > stored * _SUSPECT_PACKING:
-        message = f"The file packs {count / 1e6:.0f} MB into {stored / 1e6:.1f} MB, as no image of a head does."
+    if packing == GZIP_PACKING and count > _LARGE_BYTES and count > stored * _EMPTY_PACKING:
+        message = f"The file packs {count / 1e6:.0f} MB into {stored / 1e6:.1f} MB, as a volume of a single value does."
         raise InputRefused("LimitExceeded", message, "Check where the file comes from.")
 
 
