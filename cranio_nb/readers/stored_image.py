@@ -18,7 +18,7 @@ from .load_report import Finding
 MAX_VOXELS = 2**30
 MAX_BYTES = 2**31  # of voxels as stored
 GZIP_PACKING, BZIP2_PACKING = 1032, 10**6  # how many times smaller data become at most
-_LARGE_BYTES, _EMPTY_PACKING = 2**28, 1020  # a mask of a skull of that size is packed up to 900 times, zeros 1030 times
+_LARGE_BYTES, _EMPTY_PACKING = 2**28, 1000  # zeros are packed 1030 times, the largest mask of a skull 980 times
 _BLOCK = 2**24  # bytes read at once
 _MAX_REST_BYTES = 2**26  # bytes
 
