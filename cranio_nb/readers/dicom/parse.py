@@ -273,7 +273,7 @@ class Inflated:
         end = self._at + count
         if end > MAX_INFLATED:
             raise _over_limit(self._file, "bytes once inflated", f"more than {MAX_INFLATED}", MAX_INFLATED)
-        while len(self._bytes) < end:
+        while len(self._bytes) < end and not self._packer.eof:
             packed = self._packer.unconsumed_tail or self._stream.read(2**16)
             if not packed:
                 break
