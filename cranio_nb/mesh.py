@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+OUTER, INNER, RIM = 0, 1, 2
+"""Labels of a prosthesis's faces: towards the scalp, towards the brain, against the bone."""
+
 
 @dataclass(frozen=True, eq=False)
 class Mesh:

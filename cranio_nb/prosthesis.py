@@ -14,9 +14,6 @@ from numpy.typing import NDArray
 from .mesh import Mesh
 from .volume import Volume
 
-OUTER, INNER, RIM = 0, 1, 2
-"""Labels of `Prosthesis.sides`: towards the scalp, towards the brain, against the bone."""
-
 
 @dataclass(frozen=True, eq=False)
 class Prosthesis:

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from cranio_nb import errors
-from cranio_nb.mesh import Mesh
+from cranio_nb.mesh import INNER, OUTER, RIM, Mesh
 from cranio_nb.opening import Opening
-from cranio_nb.prosthesis import INNER, OUTER, RIM, Prosthesis
+from cranio_nb.prosthesis import Prosthesis
 from cranio_nb.volume import Volume
 
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from ..errors import InputRefused
 from ..geometry import face_sides
 from ..geometry.closest_point import nearest
-from ..mesh import Mesh
-from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
+from ..mesh import INNER, OUTER, Mesh
+from ..prosthesis import DistanceStats, Prosthesis
 from ..stages import surface_reconstruction
 from ..volume import Volume
 from .mesh_distances import distance_stats, in_voxels

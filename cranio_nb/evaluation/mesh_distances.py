@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 
 from ..errors import InputRefused
 from ..geometry.closest_point import nearest, pseudonormals
-from ..mesh import Mesh
-from ..prosthesis import INNER, OUTER, DistanceStats, Prosthesis
+from ..mesh import INNER, OUTER, Mesh
+from ..prosthesis import DistanceStats, Prosthesis
 from ..volume import Volume
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..mesh import Mesh
-from ..prosthesis import INNER, OUTER, RIM
+from ..mesh import INNER, OUTER, RIM, Mesh
 from ..volume import Volume
 
 _STEEP = 0.35  # cosine between a face's normal and the way out of the head below which the face is a wall (70 deg)

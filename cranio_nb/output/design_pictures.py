@@ -8,9 +8,9 @@ from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
 from ..evaluation.against_truth import TruthCheck
 from ..evaluation.paper_tables import pick_slices
+from ..mesh import INNER, OUTER
 from ..methods.slicewise.slices import SlicedDesign, SliceResult
 from ..pipeline.run import RunResult
-from ..prosthesis import INNER, OUTER
 from .pages import Shot, lowest_shown, shot
 
 N_SLICES = 6

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 from ..evaluation import mesh_distances, scores
 from ..evaluation.against_truth import side_distances, table3, true_prosthesis
 from ..evaluation.rim_gap import rim_gap
+from ..mesh import INNER, OUTER, RIM
 from ..opening import Opening
-from ..prosthesis import INNER, OUTER, RIM, Prosthesis
+from ..prosthesis import Prosthesis
 from ..volume import Volume
 from .preparation import Prepared
 from .trial import Attempt, Contender, Trial, attempt_apart

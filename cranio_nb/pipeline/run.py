@@ -18,10 +18,11 @@ from ..evaluation.opening_size import OpeningSize, measure_opening
 from ..evaluation.paper_tables import count_not_converged, count_statuses
 from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
+from ..mesh import RIM
 from ..methods.catalogue import default_options
 from ..methods.design import check_request, design
 from ..opening import Opening
-from ..prosthesis import RIM, Prosthesis
+from ..prosthesis import Prosthesis
 from ..readers import Finding
 from ..volume import Volume
 from .preparation import Clock, Prepared, Progress, check_margin, prepare, touches_border

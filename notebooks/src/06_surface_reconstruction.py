@@ -172,7 +172,7 @@ print(f"prosthesis.stl: {size} bytes = 84 + 50 x {len(made.mesh.faces)} faces")
 # Give the workshop the outer side only. It looks fine on screen, but it is a skin without an inside:
 
 # %% tags=["raises-exception"]
-skin = made.surface(cn.prosthesis.OUTER)
+skin = made.surface(cn.mesh.OUTER)
 cn.save(cn.Prosthesis(skin, made.sides, None, made.method), folder)
 
 # %% [markdown]

@@ -3,7 +3,7 @@ import pytest
 from spherical_cap import CENTRE, HALF_ANGLE, RADIUS, spherical_cap
 
 from cranio_nb.geometry.face_sides import label_faces
-from cranio_nb.prosthesis import INNER, OUTER, RIM
+from cranio_nb.mesh import INNER, OUTER, RIM
 from cranio_nb.stages.surface_reconstruction import extract_surface
 from cranio_nb.volume import Volume
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cranio_nb.mesh import Mesh
-from cranio_nb.prosthesis import INNER, OUTER, Prosthesis
+from cranio_nb.mesh import INNER, OUTER, Mesh
+from cranio_nb.prosthesis import Prosthesis
 
 EMPTY = np.zeros((6, 7, 8), bool)
 

@@ -10,8 +10,8 @@ from scipy import ndimage
 from cranio_nb.errors import NoOpening
 from cranio_nb.evaluation import scores
 from cranio_nb.geometry.mesh_check import check_mesh
+from cranio_nb.mesh import INNER, OUTER, RIM
 from cranio_nb.methods.design import design
-from cranio_nb.prosthesis import INNER, OUTER, RIM
 from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume, same_grid
 from data_synth import phantom_case, scan

@@ -8,7 +8,7 @@ from spherical_cap import CENTRE, HALF_ANGLE, RADIUS, THICKNESS, spherical_cap
 from cranio_nb.errors import InputRefused
 from cranio_nb.geometry.face_sides import label_faces
 from cranio_nb.geometry.mesh_check import check_mesh
-from cranio_nb.prosthesis import INNER, OUTER, RIM
+from cranio_nb.mesh import INNER, OUTER, RIM
 from cranio_nb.stages.surface_reconstruction import extract_surface, measure_deviation
 from cranio_nb.volume import Volume
 

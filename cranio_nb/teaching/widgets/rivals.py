@@ -16,10 +16,11 @@ from ...drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY, VERMILLION, rgb_s
 from ...drawing.pixels import Window, plain, tinted
 from ...drawing.shading import Solid, render, view_axes
 from ...evaluation import mesh_distances
+from ...mesh import OUTER
 from ...methods.you import mesh_to_voxels
 from ...methods.you import method as you
 from ...opening import Opening
-from ...prosthesis import OUTER, Prosthesis
+from ...prosthesis import Prosthesis
 from ...vault import radius_measurement, symmetry
 from ...vault.outer_surface import OuterSurface, measure_outer_surface
 from ...vault.ray_grid import RadiusMap

@@ -15,8 +15,8 @@ import numpy as np
 from ...drawing.canvas import Canvas
 from ...drawing.palette import BLACK, BLUE, GREY
 from ...evaluation.against_truth import TruthCheck, check_truth
+from ...mesh import OUTER
 from ...methods.design import design
-from ...prosthesis import OUTER
 from ...vault import opening_search
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.evaluation import mesh_distances
-from cranio_nb.prosthesis import INNER
+from cranio_nb.mesh import INNER
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets.evaluation import map_distances
 

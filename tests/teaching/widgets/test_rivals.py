@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cranio_nb.evaluation import mesh_distances
+from cranio_nb.mesh import OUTER
 from cranio_nb.methods.you import method as you
-from cranio_nb.prosthesis import OUTER
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets.rivals import move_plane
 from cranio_nb.vault import radius_measurement, symmetry
