@@ -19,6 +19,7 @@ from packaging.utils import canonicalize_name
 import cranio_nb
 from cranio_nb.cli.examination import examine
 from cranio_nb.cli.main import main
+from cranio_nb.methods import catalogue
 from cranio_nb.output.design_folder import FILES
 from data_synth import phantom_case
 from data_synth.files import write_case
@@ -266,3 +267,23 @@ class TestReadmeExample:
             "manifest.json",
             *FILES,
         } - {"report.html"}
+
+
+class TestArchitecturePage:
+    page = (ROOT / "docs" / "architecture.md").read_text()
+
+    def test_the_places_it_names_are_there(self):
+        table = self.page.split("## Where is it?")[1].split("## Add a method")[0]
+        places = re.findall(r"`([\w/]+(?:\.py|/))`", table)
+        assert len(places) >= 9
+        for place in places:
+            assert (ROOT / "cranio_nb" / place).exists(), place
+
+    def test_its_method_joins_the_others(self, monkeypatch):
+        monkeypatch.setattr(catalogue, "_added", {})
+        (block,) = re.findall(r"```python\n(.*?)```", self.page, re.S)
+        space = {}
+        exec(compile(block, "architecture", "exec"), space)
+        cn, case = space["cn"], phantom_case("tiny", "unilateral", 0)
+        made = cn.design(cn.Volume(case.bone, case.affine), method="sheet", thickness_mm=3.0)
+        assert made.method == "sheet" and made.parameters["thickness_mm"] == 3.0 and made.patch.voxels.any()
