@@ -1,31 +1,28 @@
 """DICOM file -> its data set up to the pixels, and where the pixels lie. Nothing is decoded.
 
-The file is not trusted: sides, frames and inflated size are capped here, before anything is allocated for them.
+The file is not trusted: sides and frames are capped here, before anything is allocated for them (`inflated` caps
+the bytes of a deflated file).
 """
 
 from __future__ import annotations
 
 import io
 import struct
-import warnings
-import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import BinaryIO, cast
+from typing import BinaryIO
 
 from pydicom.datadict import tag_for_keyword
 from pydicom.dataset import Dataset
 from pydicom.filereader import read_dataset
 from pydicom.tag import BaseTag
-from pydicom.uid import DeflatedExplicitVRLittleEndian, ExplicitVRBigEndian, ImplicitVRLittleEndian
+from pydicom.uid import ExplicitVRBigEndian, ImplicitVRLittleEndian
 
-from ...errors import InputRefused
+from .file_refusals import corrupt, over_limit, refusing
+from .inflated import Inflated, open_dataset
 
 MAX_SIDE = 4096  # rows, columns
 MAX_SLICES = 4000
-MAX_INFLATED = 256 * 2**20  # bytes of one inflated file
 _MAX_ITEMS, _MAX_ITEMS_PER_FRAME = 256, 16  # of encapsulated pixel data: so many, and so many more for each frame
 UNDEFINED_LENGTH = 0xFFFFFFFF
 # CT images, classic and multi-frame; some writers leave the class out
@@ -139,178 +136,6 @@ def parse_file(path: Path, file: int) -> tuple[Dataset, PixelPlace | None] | Non
             return _parse_stream(stream, path, file)
 
 
-@contextmanager
-def refusing(file: int) -> Iterator[None]:
-    """Turn whatever the parsing of a file raises into one sentence that names the file by its index.
-
-    Parameters
-    ----------
-    file : int
-        Index among the folder's files.
-
-    Returns
-    -------
-    context manager
-
-    Raises
-    ------
-    InputRefused
-        ``CorruptDicom``.
-
-    Examples
-    --------
-    >>> with refusing(7):
-    ...     int("no number")
-    Traceback (most recent call last):
-    cranio_nb.errors.InputRefused: DICOM file 7 of the folder cannot be parsed (ValueError). Copy the scan again ...
-    """
-    try:
-        with warnings.catch_warnings():
-            # odd values are judged later, when it is known whether they matter
-            warnings.simplefilter("ignore")
-            yield
-    except InputRefused:
-        raise
-    except Exception as error:
-        # a broken file may raise anything; its own words stay inside
-        raise corrupt(file, f"cannot be parsed ({type(error).__name__})") from None
-
-
-def corrupt(file: int, what: str, code: str = "CorruptDicom") -> InputRefused:
-    """The refusal for a damaged file.
-
-    Parameters
-    ----------
-    file : int
-        Index among the folder's files.
-    what : str
-        What is wrong with it: the end of a sentence.
-    code : str
-        Code of the refusal.
-
-    Returns
-    -------
-    InputRefused
-    """
-    return InputRefused(code, f"DICOM file {file} of the folder {what}.", "Copy the scan again from its source.")
-
-
-def open_dataset(stream: BinaryIO, file: int) -> tuple[Dataset, BinaryIO]:
-    """Read the meta elements of an open file, and come to the start of its data set.
-
-    Parameters
-    ----------
-    stream : binary stream
-        The whole file.
-    file : int
-        Index among the folder's files.
-
-    Returns
-    -------
-    meta : Dataset
-        Elements of group 2.
-    stream : binary stream
-        At the first element of the data set; `Inflated`, where the file is deflated.
-    """
-    stream.seek(128)
-    # without preamble the elements begin at once
-    if stream.read(4) != b"DICM":
-        stream.seek(0)
-    meta = read_dataset(stream, False, True, stop_when=lambda tag, vr, length: tag >> 16 != 2)
-    # deflated: everything behind the meta elements is one packed stream
-    if meta.get("TransferSyntaxUID") != DeflatedExplicitVRLittleEndian:
-        return meta, stream
-    return meta, cast(BinaryIO, Inflated(stream, file))
-
-
-class Inflated:
-    """A packed stream as the bytes it holds, inflated no farther than it is read.
-
-    Parameters
-    ----------
-    stream : binary stream
-        At the start of the packed data; it must stay open.
-    file : int
-        Index among the folder's files.
-
-    Examples
-    --------
-    >>> packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
-    >>> data = Inflated(io.BytesIO(packer.compress(bytes(10**7) + b"end") + packer.flush()), 0)
-    >>> len(data.read(2)), data.tell(), data.size < 10**6
-    (2, 2, True)
-    """
-
-    def __init__(self, stream: BinaryIO, file: int) -> None:
-        self._stream, self._file = stream, file
-        self._packer = zlib.decompressobj(-zlib.MAX_WBITS)
-        self._bytes = bytearray()
-        self._at = 0
-
-    @property
-    def size(self) -> int:
-        """Bytes inflated so far."""
-        return len(self._bytes)
-
-    def read(self, count: int) -> bytes:
-        """Read bytes.
-
-        Parameters
-        ----------
-        count : int
-            How many at most.
-
-        Returns
-        -------
-        bytes
-            Fewer at the end.
-
-        Raises
-        ------
-        InputRefused
-            ``LimitExceeded`` for more than `MAX_INFLATED` bytes from the start.
-        """
-        end = self._at + count
-        if end > MAX_INFLATED:
-            raise _over_limit(self._file, "bytes once inflated", f"more than {MAX_INFLATED}", MAX_INFLATED)
-        while len(self._bytes) < end and not self._packer.eof:
-            packed = self._packer.unconsumed_tail or self._stream.read(2**16)
-            if not packed:
-                break
-            self._bytes += self._packer.decompress(packed, max(end - len(self._bytes), 2**16))
-        part = bytes(self._bytes[self._at : end])
-        self._at = min(end, max(self._at, len(self._bytes)))
-        return part
-
-    def seek(self, offset: int, whence: int = io.SEEK_SET) -> int:
-        """Go to a place, counted from the start or from here.
-
-        Parameters
-        ----------
-        offset : int
-            Bytes.
-        whence : int
-            `io.SEEK_SET` or `io.SEEK_CUR`.
-
-        Returns
-        -------
-        int
-            The place.
-        """
-        self._at = offset + (self._at if whence == io.SEEK_CUR else 0)
-        return self._at
-
-    def tell(self) -> int:
-        """Where the next byte is read.
-
-        Returns
-        -------
-        int
-            Bytes from the start.
-        """
-        return self._at
-
-
 def _parse_stream(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, PixelPlace | None]:
     """The elements before the pixels; the reading stops at the pixels and notes where that is."""
     meta, data = open_dataset(stream, file)
@@ -366,12 +191,7 @@ def _check_sides(dataset: Dataset, file: int) -> None:
         if declared is None or int(declared) < 1:
             raise corrupt(file, f"declares no {what}")
         if int(declared) > cap:
-            raise _over_limit(file, what, int(declared), cap)
-
-
-def _over_limit(file: int, what: str, declared: object, cap: int) -> InputRefused:
-    message = f"DICOM file {file} of the folder declares {declared} {what}; at most {cap} are read."
-    return InputRefused("LimitExceeded", message, "Check where the file comes from.")
+            raise over_limit(file, what, int(declared), cap)
 
 
 def _completed(data: BinaryIO, place: PixelPlace, dataset: Dataset) -> PixelPlace:
@@ -409,7 +229,7 @@ def _items(data: BinaryIO, place: PixelPlace, size: int, frames: int) -> tuple[t
         if tag != _ITEM or length == UNDEFINED_LENGTH:
             return None
         if len(items) == cap:
-            raise _over_limit(place.file, "items of pixel data", f"more than {cap}", cap)
+            raise over_limit(place.file, "items of pixel data", f"more than {cap}", cap)
         items.append((offset + 8, length))
         offset += 8 + length
     return None

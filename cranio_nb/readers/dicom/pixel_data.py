@@ -23,7 +23,8 @@ from pydicom.uid import (
 
 from ...errors import InputRefused
 from .codecs import COMPRESSED, decode, find_missing_decoder
-from .parse import UNDEFINED_LENGTH, PixelPlace, open_dataset
+from .inflated import open_dataset
+from .parse import UNDEFINED_LENGTH, PixelPlace
 from .slice_header import SliceHeader
 
 _NATIVE = {ImplicitVRLittleEndian, ExplicitVRLittleEndian, ExplicitVRBigEndian, DeflatedExplicitVRLittleEndian}

@@ -15,7 +15,8 @@ from pydicom.uid import DeflatedExplicitVRLittleEndian, ExplicitVRBigEndian, Imp
 from ...errors import InputRefused
 from ..load_report import Finding
 from .file_list import IMAGE_SUFFIXES, list_files
-from .parse import CT_CLASSES, corrupt, parse_file
+from .file_refusals import corrupt
+from .parse import CT_CLASSES, parse_file
 from .slice_header import SliceHeader, count_frames, read_headers
 
 MAX_IMAGES = 20_000  # of a folder, all frames counted

@@ -1,31 +1,28 @@
 """Images of a folder -> the slices of the one head CT in it, and why the others were left.
 
-Images belong together when series, size, spacing, orientation and kind of image agree.
+`series_groups` says which images may be slices of a CT and which of them belong together; here one group is chosen.
 """
 
 from __future__ import annotations
 
-import re
-from bisect import bisect_left, bisect_right, insort
 from collections import Counter
 from collections.abc import Collection
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ...errors import InputRefused
 from ..load_report import Finding
-from .continuation import DIRECTION_TOL, agree, check_continued
+from .continuation import agree, check_continued
 from .geometry import MAX_STEP_MM, MIN_SLICES, axes_of, bad_geometry, check_geometry, sort_by_height
+from .kernel import describe_kernel, is_sharp
 from .parse import CT_CLASSES
+from .series_groups import CT_MODALITIES, group_alike, join_single_slices, nothing_usable, split_usable
 from .slice_header import SliceHeader
 
-_CT = ("CT", "")
 _STRAY = 3  # so few images are a scout or a reference picture, not a scan
 _HEAD_HEIGHT_MM = 150.0  # mm: a taller scan has no advantage over another
 _MAX_SERIES_NUMBER = 99_999  # a longer one may be anything, a birth date among others
-_SOFT = ("SOFT", "SMOOTH", "STANDARD", "BRAIN", "STND")
-_WEIGHTS = (1.41, 1.73, 2.24, 2.65, 3.32, 3.61, 4.12, 4.36, 4.8)  # any positive numbers that directions do not cancel
 _FOLDER_REMEDY = "Give the folder that holds only the wanted series."
 
 
@@ -113,10 +110,10 @@ def choose_series(headers: list[SliceHeader], allow: Collection[str] = ()) -> tu
     (20, ['SeriesChosen', 'SeriesSkipped'])
     """
     # CT images, in groups that belong together
-    usable, left, others = _usable(headers, "wrong_modality" in allow)
+    usable, left, others = split_usable(headers, "wrong_modality" in allow)
     if not usable:
-        raise _nothing_usable(headers, left)
-    usable, joined = _joined(usable)
+        raise nothing_usable(headers, left)
+    usable, joined = join_single_slices(usable)
     groups = group_alike(usable)
     placed = [group for group in groups if group[0].orientation is not None and group[0].spacing is not None]
     if not placed:
@@ -135,113 +132,6 @@ def choose_series(headers: list[SliceHeader], allow: Collection[str] = ()) -> tu
     rest = [candidate for candidate in candidates if candidate is not chosen]
     strays = [group for group in placed if not any(group is scan for scan in scans)]
     return chosen.headers, joined + _report(chosen, rest, strays, left, others)
-
-
-def _usable(
-    headers: list[SliceHeader], any_modality: bool
-) -> tuple[list[SliceHeader], Counter[str], list[SliceHeader]]:
-    """Images that may be slices of a CT, and the others: counted by reason, and themselves."""
-    usable, left, others = [], Counter[str](), []
-    for header in headers:
-        reason = _why_not(header, any_modality)
-        if reason:
-            left[reason] += 1
-            others.append(header)
-        else:
-            usable.append(header)
-    return usable, left, others
-
-
-def _joined(headers: list[SliceHeader]) -> tuple[list[SliceHeader], list[Finding]]:
-    """The images as one series, where each says that it is a series of its own, as some anonymisers leave them."""
-    counts = Counter(header.series for header in headers)
-    single = sum(count == 1 for count in counts.values())
-    if single < MIN_SLICES or max(counts.values()) >= MIN_SLICES:
-        return headers, []
-    message = f"Each of {single} slices says that it is a series of its own; they were read as one series."
-    joined = [replace(header, series="") if counts[header.series] == 1 else header for header in headers]
-    return joined, [Finding("SeriesJoined", "warning", message, {"slices": single})]
-
-
-def _why_not(header: SliceHeader, any_modality: bool) -> str:
-    """Why an image is no slice of a CT; empty where it may be one."""
-    if header.samples != 1 or header.photometric not in ("MONOCHROME1", "MONOCHROME2", ""):
-        return "colour picture"
-    if "LOCALIZER" in header.image_type:
-        return "scout view"
-    if header.modality not in _CT and not any_modality:
-        return "other modality"
-    if header.sop_class not in CT_CLASSES and not any_modality:
-        return "not a CT image"
-    if header.frames > 1 and header.position is None:
-        return "film without positions"
-    return ""
-
-
-def _nothing_usable(headers: list[SliceHeader], left: Counter[str]) -> InputRefused:
-    """The refusal for a folder without CT slices, with what is there instead."""
-    others = sorted({h.modality for h in headers if h.modality not in _CT} & _MODALITIES)
-    if left["other modality"]:
-        found = ", ".join(others) or "another modality"
-        return InputRefused("WrongModality", f"The images are {found}, not CT.", "Give the folder of a head CT.")
-    listed = ", ".join(f"{count} x {reason}" for reason, count in sorted(left.items()))
-    what = f"The folder holds no CT slices ({listed})." if listed else "The folder holds no DICOM images."
-    return InputRefused("NoImages", what, "Give the folder of a head CT in DICOM format.")
-
-
-_MODALITIES = {"MR", "PT", "NM", "CR", "DX", "US", "XA", "RF", "MG", "OT", "SC", "SEG", "RTSTRUCT", "RTDOSE"}
-
-
-def group_alike(headers: list[SliceHeader]) -> list[list[SliceHeader]]:
-    """Group images that agree in series, size, kind, orientation and spacing, in file order.
-
-    Parameters
-    ----------
-    headers : list of SliceHeader
-
-    Returns
-    -------
-    list of list of SliceHeader
-
-    Notes
-    -----
-    Each image is compared with those groups only whose geometry is near on one line, found by bisection; so the time
-    grows with the number of images, and not with its square.
-
-    Examples
-    --------
-    >>> from types import SimpleNamespace
-    >>> axial, turned = np.array([1.0, 0, 0, 0, 1, 0]), np.array([0, 1.0, 0, 0, 0, 1])
-    >>> common = {"series": "1", "rows": 4, "cols": 4, "modality": "CT", "image_type": (), "spacing": np.ones(2)}
-    >>> images = [SimpleNamespace(orientation=v, **common) for v in (axial, turned, axial + 1e-6)]
-    >>> [len(group) for group in group_alike(images)]
-    [2, 1]
-    """
-    groups: list[list[SliceHeader]] = []
-    near: dict[object, list[tuple[float, int, tuple[float, ...]]]] = {}
-    for header in headers:
-        # the first three values say original/derived, primary/secondary and axial/localizer; later ones may vary
-        kind = (header.series, header.rows, header.cols, header.modality, header.image_type[:3])
-        known = near.setdefault((*kind, header.orientation is None, header.spacing is None), [])
-        numbers = _numbers(header)
-        at = sum(weight * number for weight, number in zip(_WEIGHTS, numbers, strict=False))
-        reach = 1.01 * DIRECTION_TOL * sum(w * (1 + abs(n)) for w, n in zip(_WEIGHTS, numbers, strict=False))
-        low, high = bisect_left(known, (at - reach, -1, ())), bisect_right(known, (at + reach, len(headers), ()))
-        for _, group, first in known[low:high]:
-            if all(abs(a - b) <= DIRECTION_TOL * (1 + abs(b)) for a, b in zip(first, numbers, strict=True)):
-                groups[group].append(header)
-                break
-        else:
-            insort(known, (at, len(groups), numbers))
-            groups.append([header])
-    return groups
-
-
-def _numbers(header: SliceHeader) -> tuple[float, ...]:
-    """An image's orientation and spacing in one; what is no number is a number that none has."""
-    parts = [part for part in (header.orientation, header.spacing) if part is not None]
-    values = np.concatenate([*parts, [0.0]])
-    return tuple(np.where(np.isfinite(values), values, 1e9).tolist())
 
 
 def _candidate(group: list[SliceHeader]) -> Candidate:
@@ -280,47 +170,10 @@ def _best(candidates: list[Candidate]) -> Candidate:
     ties = [best, *(c for c in rivals if c.original == best.original and abs(c.step - best.step) < 0.05 * best.step)]
     if len(ties) == 1:
         return best
-    smooth = [c for c in ties if not _is_sharp(c.headers[0].kernel)]
+    smooth = [c for c in ties if not is_sharp(c.headers[0].kernel)]
     if len(smooth) != 1 or not all(c.headers[0].kernel for c in ties):
         raise ambiguous(ties, "series")
     return smooth[0]
-
-
-def describe_kernel(kernel: str) -> str:
-    """What may be said of a kernel: a maker's name for it is text of the header.
-
-    Parameters
-    ----------
-    kernel : str
-
-    Returns
-    -------
-    {"sharp", "soft", "unknown"}
-
-    Examples
-    --------
-    >>> [describe_kernel(name) for name in ("BONE", "H31s", "DOE^JOHN", "")]
-    ['sharp', 'soft', 'unknown', 'unknown']
-    """
-    name = kernel.upper()
-    if _is_sharp(name):
-        return "sharp"
-    coded = re.fullmatch(r"(H|B|J|U|HR|BR|HC|BL|FC)\d\d?.{0,3}(/\d)?", name)
-    return "soft" if coded or name in _SOFT or name in ("UA", "UB", "UC") else "unknown"
-
-
-def _is_sharp(kernel: str) -> bool:
-    """Whether a kernel's name is one of the makers' for edges: bone, lung, or a high number."""
-    # by its own name
-    if any(word in kernel for word in ("BONE", "SHARP", "EDGE", "LUNG", "DETAIL", "ULTRA")):
-        return True
-    # by the makers' codes: letters, and a number that rises with sharpness
-    letters, digits = kernel[:2].rstrip("0123456789"), "".join(c for c in kernel.split("/")[0] if c.isdigit())
-    return bool(digits) and (
-        (letters in {"H", "B", "J", "U", "HR", "BR", "HC", "BL"} and int(digits[:2]) >= 55)
-        or (letters == "FC" and int(digits[:2]) in (*range(30, 36), *range(50, 60), *range(80, 90)))
-        or kernel.startswith(("YB", "YC", "YD"))
-    )
 
 
 def ambiguous(candidates: list[Candidate], what: str) -> InputRefused:
@@ -386,7 +239,7 @@ def _report(
         if count:
             message = f"Left {count} image{'s' * (count > 1)} that fit no stack."
             findings.append(Finding("ImagesSkipped", "warning" if same else "info", message, {"images": count}))
-    if first.modality not in _CT or first.sop_class not in CT_CLASSES:
+    if first.modality not in CT_MODALITIES or first.sop_class not in CT_CLASSES:
         findings.append(Finding("WrongModality", "warning", "The images are not CT; they were read as allowed.", {}))
     if left:
         listed = ", ".join(f"{reason}: {count}" for reason, count in sorted(left.items()))

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydicom.dataset import Dataset
 
-from .parse import OVERLAY_BITS, PixelPlace, refusing
+from .file_refusals import refusing
+from .parse import OVERLAY_BITS, PixelPlace
 
 Vector = NDArray[np.float64]
 

@@ -1,15 +1,12 @@
-"""DICOM files that end too early, nest too deep or unpack too far."""
+"""DICOM files that end too early or nest too deep, and the place of the pixels in those that do not."""
 
-import io
-import zlib
 from pathlib import Path
 
 import numpy as np
-import pydicom
 import pytest
 from dicom_series import head, refusal, save, series
 
-from cranio_nb.readers.dicom.parse import Inflated, looks_like_dicom, parse_file
+from cranio_nb.readers.dicom.parse import looks_like_dicom, parse_file
 
 
 @pytest.mark.parametrize("keep", [0.999, 0.9, 0.3, 0.12, 0.06, 0.04])
@@ -33,20 +30,6 @@ def test_one_byte_short_is_refused(tmp_path: Path) -> None:
     victim = folder / "image0023.dcm"
     victim.write_bytes(victim.read_bytes()[:-1])
     assert refusal(folder).code == "CorruptPixelData"
-
-
-def test_deflate_bomb_is_refused(tmp_path: Path) -> None:
-    bomb = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
-    zeros = bytes(2**24)
-    packed = b"".join(bomb.compress(zeros) for _ in range(20)) + bomb.flush()
-    folder = save(tmp_path / "scan", series(head())[:1], syntax="1.2.840.10008.1.2.1.99")
-    path = folder / "image0000.dcm"
-    with open(path, "rb") as stream:
-        meta = pydicom.filereader.read_file_meta_info(path)
-        size = 144 + meta.FileMetaInformationGroupLength
-        start = stream.read(size)
-    path.write_bytes(start + packed)
-    assert refusal(folder).code == "LimitExceeded"
 
 
 @pytest.mark.parametrize("depth", [200, 2000, 20_000])
@@ -75,13 +58,3 @@ def test_other_files_are_not_parsed(tmp_path: Path) -> None:
     (tmp_path / "note").write_text("no scan at all" * 20)
     assert parse_file(tmp_path / "note", 0) is None
     assert not looks_like_dicom(b"DICM" * 40)
-
-
-def test_a_packed_stream_that_ends_early_ends_the_reading() -> None:
-    packer = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
-    packed = packer.compress(bytes(300_000) + b"end") + packer.flush()
-    data = Inflated(io.BytesIO(packed + bytes(100_000)), 0)
-    assert data.read(400_000) == bytes(300_000) + b"end" and data.read(1) == b""
-    assert data.seek(300_001) == 300_001 and data.read(9) == b"nd"
-    # a stream that was cut gives what it holds
-    assert 0 < len(Inflated(io.BytesIO(packed[: len(packed) // 2]), 0).read(400_000)) < 300_003

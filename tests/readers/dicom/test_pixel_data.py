@@ -12,7 +12,8 @@ from pydicom.uid import DeflatedExplicitVRLittleEndian, RLELossless
 
 from cranio_nb.readers import read_ct
 from cranio_nb.readers.dicom import pixel_data
-from cranio_nb.readers.dicom.parse import open_dataset, parse_file
+from cranio_nb.readers.dicom.inflated import open_dataset
+from cranio_nb.readers.dicom.parse import parse_file
 from cranio_nb.readers.dicom.pixel_data import read_stack
 from cranio_nb.readers.dicom.slice_header import read_headers
 

@@ -1,9 +1,6 @@
 """Exams of several series: the head CT in thin axial slices is chosen, and no choice is made between equals."""
 
-import time
 from pathlib import Path
-from types import SimpleNamespace
-from typing import cast
 
 import numpy as np
 import pytest
@@ -14,8 +11,6 @@ from pydicom.uid import (
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom.series_choice import group_alike
-from cranio_nb.readers.dicom.slice_header import SliceHeader
 
 
 def test_the_thin_axial_series_is_chosen(tmp_path: Path) -> None:
@@ -56,26 +51,3 @@ def test_two_equal_scans_are_not_chosen_from(change: str, code: str, tmp_path: P
     with pytest.raises(InputRefused) as caught:
         read_ct(tmp_path / "exam")
     assert caught.value.code == code and "SECRET" not in str(caught.value)
-
-
-def images_turned_by(angles: np.ndarray) -> list[SliceHeader]:
-    common = {"series": "1", "rows": 4, "cols": 4, "modality": "CT", "image_type": (), "spacing": np.ones(2)}
-    turned = [np.array([np.cos(a), np.sin(a), 0, -np.sin(a), np.cos(a), 0]) for a in angles]
-    return [cast(SliceHeader, SimpleNamespace(orientation=v, **common)) for v in turned]
-
-
-def test_many_directions_take_linear_time() -> None:
-    seconds = []
-    for count in (2000, 16000):
-        headers = images_turned_by(np.linspace(0, 6.28, count))
-        start = time.perf_counter()
-        groups = group_alike(headers)
-        seconds.append(time.perf_counter() - start)
-        assert sum(map(len, groups)) == count and len(groups) > 1000
-    assert seconds[1] < 30 * seconds[0]  # the square of 8 is 64
-
-
-def test_rounding_does_not_part_a_series() -> None:
-    angles = 1.0 + 1e-6 * np.random.default_rng(0).normal(size=500)
-    assert len(group_alike(images_turned_by(angles))) == 1
-    assert len(group_alike(images_turned_by(np.repeat([1.0, 1.01], 50)))) == 2
