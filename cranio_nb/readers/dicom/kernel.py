@@ -36,7 +36,7 @@ def is_sharp(kernel: str) -> bool:
     Parameters
     ----------
     kernel : str
-        Words and codes in capitals.
+        Words and codes, in capitals or not.
 
     Returns
     -------
@@ -44,16 +44,18 @@ def is_sharp(kernel: str) -> bool:
 
     Examples
     --------
-    >>> [is_sharp(name) for name in ("BONE", "H70h", "H31s", "FC30", "")]
-    [True, True, False, True, False]
+    >>> [is_sharp(name) for name in ("Bone", "H70h", "H31s", "Hr64", "FC30", "YC", "YA", "")]
+    [True, True, False, True, True, True, False, False]
     """
+    kernel = kernel.upper()
     # by its own name
     if any(word in kernel for word in ("BONE", "SHARP", "EDGE", "LUNG", "DETAIL", "ULTRA")):
         return True
     # by the makers' codes: letters, and a number that rises with sharpness
     letters, digits = kernel[:2].rstrip("0123456789"), "".join(c for c in kernel.split("/")[0] if c.isdigit())
+    if kernel.startswith(("YB", "YC", "YD")):
+        return True
     return bool(digits) and (
         (letters in {"H", "B", "J", "U", "HR", "BR", "HC", "BL"} and int(digits[:2]) >= 55)
         or (letters == "FC" and int(digits[:2]) in (*range(30, 36), *range(50, 60), *range(80, 90)))
-        or kernel.startswith(("YB", "YC", "YD"))
     )
