@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
-from ..vault.opening_search import survey_openings
 from ..vault.head_frame import head_or_grid_axes
+from ..vault.opening_search import survey_openings
 from ..volume import Volume
 from .alignment import align, centre_frames, mean_head
 from .head_frame import HeadFrame, even_directions
