@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CloughTocher2DInterpolator
 
 from ..errors import InputRefused
+from ..vault.head_frame import head_or_grid_axes
 from ..vault.ray_grid import RadiusMap, RayGrid
 from ..volume import Volume
 from .alignment import align
@@ -76,7 +77,7 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
         ``PriorDoesNotFit`` when the skull does not lie on the mean head; ``NoVault``.
     """
     # rays of different skulls can be compared only in the frame of the mean head
-    frame = align(sample_surface(bone), prior.mean)
+    frame = align(sample_surface(bone, head_or_grid_axes(bone)), prior.mean)
     if frame.misfit_mm > _MISFIT_MM:
         message = f"The skull lies {frame.misfit_mm:.1f} mm off the prior's mean head; {_MISFIT_MM:g} mm is the most."
         raise InputRefused("PriorDoesNotFit", message, "Design without the prior, or learn one from such skulls.")

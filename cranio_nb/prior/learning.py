@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
+from ..vault.head_frame import head_or_grid_axes
 from ..vault.opening_search import survey_openings
 from ..volume import Volume
 from .alignment import align, centre_frames, mean_head
@@ -51,7 +52,7 @@ def learn_prior(bones: Iterable[Volume], progress: Callable[[str, float], None] 
     packed, skulls = [], []
     for bone in bones:
         packed.append(_Packed.of(bone))
-        skulls.append(sample_surface(bone))
+        skulls.append(sample_surface(bone, head_or_grid_axes(bone)))
     if len(packed) < MIN_SKULLS:
         message = f"A prior needs {MIN_SKULLS} intact skulls; {len(packed)} could be used."
         raise InputRefused("TooFewSkulls", message, "Give a folder with more scans of whole heads.")

@@ -70,13 +70,15 @@ class SkullPoints:
         return SkullPoints(outer=self.outer[::2], inner=self.inner[::2], centre=self.centre, axes=self.axes)
 
 
-def sample_surface(bone: Volume) -> SkullPoints:
+def sample_surface(bone: Volume, axes: Array) -> SkullPoints:
     """Points of a skull along rays from inside it.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
+    axes : ndarray, shape (3, 3)
+        Rows: the head's left, back and up, orthonormal, world; from `vault.head_frame.head_or_grid_axes`.
 
     Returns
     -------
@@ -87,11 +89,10 @@ def sample_surface(bone: Volume) -> SkullPoints:
     InputRefused
         ``NoVault`` when the mask holds no skull vault.
     """
-    own = head_or_grid_axes(bone)
-    centre, axes, directions = head_centre(bone, own), own.T, even_directions(4)
-    radii = measure_outline(bone, HeadFrame(axes, centre), directions)
+    centre, directions = head_centre(bone, axes), even_directions(4)
+    radii = measure_outline(bone, HeadFrame(axes.T, centre), directions)
     outer, inner = ((directions * radius[:, None])[np.isfinite(radius)] for radius in radii)
-    return SkullPoints(outer=outer, inner=inner, centre=centre, axes=axes)
+    return SkullPoints(outer=outer, inner=inner, centre=centre, axes=axes.T)
 
 
 def vault_coverage(bone: Volume) -> float:
@@ -113,7 +114,7 @@ def vault_coverage(bone: Volume) -> float:
         ``NoVault``.
     """
     on_vault = even_directions(4)[:, 2] > np.cos(np.radians(_VAULT_DEG))
-    return len(sample_surface(bone).outer) / int(np.count_nonzero(on_vault))
+    return len(sample_surface(bone, head_or_grid_axes(bone)).outer) / int(np.count_nonzero(on_vault))
 
 
 def measure_outline(bone: Volume, frame: HeadFrame, directions: Array) -> tuple[Array, Array]:

@@ -78,7 +78,19 @@ def enclosed(bone: NDArray[np.bool_]) -> NDArray[np.int8]:
     >>> int(enclosed(shell)[2, 2, 2])
     26
     """
-    return np.sum([_met(bone, direction) for direction in _DIRECTIONS], axis=0, dtype=np.int8)
+    count = np.zeros(bone.shape, np.int8)
+    for direction in _DIRECTIONS:
+        # the layers across the lines, in the order in which bone is handed on: those the lines come to last go first
+        axis = next(i for i, d in enumerate(direction) if d)
+        order = slice(None, None, -direction[axis])
+        layers = np.moveaxis(bone, axis, 0)[order]
+        # a line meets bone where its next voxel is bone or meets it: met[i, j, k] = (met | bone)[i - 1, j + a, k + b]
+        (a, b), (rows, cols) = (1 + d for i, d in enumerate(direction) if i != axis), layers.shape[1:]
+        met = np.zeros_like(layers)
+        for i in range(1, len(layers)):
+            met[i] = np.pad(met[i - 1] | layers[i - 1], 1)[a : a + rows, b : b + cols]
+        count += np.moveaxis(met[order], 0, axis)
+    return count
 
 
 def cavity_ball(coarse: Volume) -> tuple[NDArray[np.float64], float]:
@@ -101,33 +113,10 @@ def cavity_ball(coarse: Volume) -> tuple[NDArray[np.float64], float]:
     InputRefused
         ``NoVault`` when no bone encloses a cavity.
     """
-    room = np.where(enclosed(coarse.voxels) >= _ENCLOSED, _room(coarse), 0.0)
-    at = np.unravel_index(int(room.argmax()), room.shape)
-    if room[at] < _LEAST_MM:
+    # the radius of the largest ball about each enclosed block is its distance from bone
+    from_bone_mm = ndimage.distance_transform_edt(~coarse.voxels, sampling=coarse.spacing)
+    radius_mm = np.where(enclosed(coarse.voxels) >= _ENCLOSED, from_bone_mm, 0.0)
+    at = np.unravel_index(int(radius_mm.argmax()), radius_mm.shape)
+    if radius_mm[at] < _LEAST_MM:
         raise InputRefused("NoVault", "The bone found does not enclose a cranial cavity.", "Is this a head CT?")
-    return coarse.to_world(at), float(room[at])
-
-
-def _room(coarse: Volume) -> NDArray[np.float64]:
-    """Distance of each block from bone, mm."""
-    if not coarse.voxels.any():
-        return np.zeros(coarse.shape)
-    return np.asarray(ndimage.distance_transform_edt(~coarse.voxels, sampling=coarse.spacing))
-
-
-def _met(bone: NDArray[np.bool_], direction: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Voxels from which a line along one direction to a neighbour meets bone."""
-    axis = next(i for i, d in enumerate(direction) if d)
-    layers = np.moveaxis(bone, axis, 0)[:: -direction[axis]]  # the layer the lines come to last stands first
-    aside = [d for i, d in enumerate(direction) if i != axis]
-    met = np.zeros_like(layers)
-    for i in range(1, len(layers)):
-        met[i] = _moved(met[i - 1] | layers[i - 1], aside)
-    return np.moveaxis(met[:: -direction[axis]], 0, axis)
-
-
-def _moved(layer: NDArray[np.bool_], by: list[int]) -> NDArray[np.bool_]:
-    """out[i, j] = layer[i + by[0], j + by[1]], False beyond the edge."""
-    padded = np.pad(layer, 1)
-    rows, cols = layer.shape
-    return padded[1 + by[0] : 1 + by[0] + rows, 1 + by[1] : 1 + by[1] + cols]
+    return coarse.to_world(at), float(radius_mm[at])

@@ -5,6 +5,7 @@ import pytest
 
 from cranio_nb.prior.head_frame import HeadFrame, even_directions
 from cranio_nb.prior.skull_points import measure_outline, sample_surface, vault_coverage
+from cranio_nb.vault.orientation import head_axes
 from cranio_nb.volume import Volume
 
 
@@ -24,7 +25,7 @@ def test_the_outline_of_a_hollow_ball_is_its_two_radii():
 
 
 def test_points_lie_on_the_phantom(phantom, intact):
-    head, points = phantom("round", 1).head, sample_surface(intact(1))
+    head, points = phantom("round", 1).head, sample_surface(intact(1), head_axes(intact(1)))
     p = points.centre + points.outer @ points.axes.T - head.centre
     away = np.linalg.norm(p, axis=1)
     assert np.median(np.abs(away - head.outer_radius(p / away[:, None]))) < 1.5

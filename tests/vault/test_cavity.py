@@ -24,6 +24,15 @@ def test_inside_a_closed_shell_bone_is_met_everywhere_and_outside_never_by_half(
     assert met[0, 0, 0] <= 13 and met[25, 25, 1] <= 13
 
 
+def test_one_voxel_is_met_from_all_that_lie_on_a_line_with_it():
+    bone = np.zeros((6, 5, 7), bool)
+    at = np.array([2, 1, 4])
+    bone[tuple(at)] = True
+    away = np.abs(np.indices(bone.shape) - at[:, None, None, None])
+    on_line = ((away == 0) | (away == away.max(axis=0))).all(axis=0) & ~bone
+    np.testing.assert_array_equal(enclosed(bone), on_line)
+
+
 @pytest.mark.parametrize("hole", [0.0, 20.0, 45.0])
 def test_the_largest_ball_lies_in_the_shell_even_where_a_hole_is_wide(hole):
     centre, radius = cavity_ball(coarse_bone(shell(hole=hole)))
@@ -40,9 +49,10 @@ def test_turning_the_grid_turns_the_result():
     np.testing.assert_allclose(np.linalg.norm(there), np.linalg.norm(centre), atol=1e-9)
 
 
-def test_a_solid_encloses_nothing():
+@pytest.mark.parametrize("filled", [True, False])
+def test_neither_a_solid_nor_nothing_encloses_a_cavity(filled):
     with pytest.raises(InputRefused) as refused:
-        cavity_ball(coarse_bone(Volume(np.ones((30, 30, 30), bool), np.diag([3.0, 3, 3, 1]))))
+        cavity_ball(coarse_bone(Volume(np.full((30, 30, 30), filled), np.diag([3.0, 3, 3, 1]))))
     assert refused.value.code == "NoVault"
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.stages.segmentation import segment
-from cranio_nb.vault.head_frame import SURE, even_directions, find_head_frame, head_or_grid_axes
+from cranio_nb.vault.head_frame import SURE, find_head_frame, head_or_grid_axes
 from cranio_nb.vault.orientation import head_axes
 from cranio_nb.volume import Volume
 from data_synth import Pose, face_case, phantom_case
@@ -78,9 +78,3 @@ def test_without_a_cavity_there_is_no_frame():
     with pytest.raises(InputRefused):
         find_head_frame(slab)
     np.testing.assert_array_equal(head_or_grid_axes(slab), head_axes(slab))
-
-
-def test_directions_are_even():
-    rays = even_directions(3000)
-    np.testing.assert_allclose(np.linalg.norm(rays, axis=1), 1)
-    np.testing.assert_allclose(rays.T @ rays / 3000, np.eye(3) / 3, atol=1e-3)
