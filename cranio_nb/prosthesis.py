@@ -38,6 +38,7 @@ class Prosthesis:
 
     Examples
     --------
+    >>> from cranio_nb.mesh import INNER, OUTER
     >>> triangle = Mesh(np.eye(3), np.array([[0, 1, 2]]))
     >>> made = Prosthesis(triangle, np.array([OUTER], np.uint8), None, "none")
     >>> len(made.surface(OUTER).faces), len(made.surface(INNER).faces)

@@ -2,7 +2,6 @@
 
 import gzip
 import io
-import time
 import tracemalloc
 import zlib
 from pathlib import Path
@@ -74,9 +73,7 @@ def test_a_gigabyte_of_zeros_is_not_inflated(tmp_path: Path) -> None:
     packed += b"".join(packer.compress(bytes(2**24)) for _ in range(38)) + packer.flush()
     path = tmp_path / "a.nii.gz"
     path.write_bytes(packed)
-    start = time.perf_counter()
     assert file_refusal(path).code == "LimitExceeded"
-    assert time.perf_counter() - start < 1
 
 
 def test_only_the_declared_bytes_are_inflated(tmp_path: Path) -> None:

