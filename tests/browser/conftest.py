@@ -10,9 +10,12 @@ from browser_lab import ARGS, browser_path, run_all, running_lab
 LESSONS = Path(__file__).parents[2] / "notebooks"
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium():
-    """A headless Chromium; the test is skipped where playwright or the browser is missing."""
+    """A headless Chromium; the test is skipped where playwright or the browser is missing.
+
+    Its driver keeps an event loop running in this thread, so it ends with the module: other tests run their own.
+    """
     driver = pytest.importorskip("playwright.sync_api", reason="playwright drives the browser tests")
     pytest.importorskip("jupyterlab", reason="the browser tests open JupyterLab")
     if browser_path() is None:
