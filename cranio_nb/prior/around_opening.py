@@ -1,6 +1,6 @@
 """A shape prior and a skull with a hole -> the vault most likely around the hole.
 
-Frames: head (see `head_frame`), radii in mm of the mean head; maps (v, u) of rays (see `vault.ray_grid`) with radii in
+Frames: mean head (see `mean_frame`), radii in mm of it; maps (v, u) of rays (see `vault.ray_grid`) with radii in
 mm of the skull; world mm (LPS).
 """
 
@@ -17,7 +17,7 @@ from ..vault.head_frame import head_or_grid_axes
 from ..vault.ray_grid import RadiusMap, RayGrid
 from ..volume import Volume
 from .alignment import align
-from .head_frame import HeadFrame
+from .mean_frame import MeanFrame
 from .shape_prior import Prior, conditional_mean
 from .skull_points import sample_surface
 from .vault_radii import (
@@ -46,14 +46,14 @@ class Prediction:
     ----------
     outer, inner : ndarray, shape (M, M)
         Conditional mean of the radii along the rays of the map, mm; nan where the prior does not reach.
-    frame : HeadFrame
+    frame : MeanFrame
         How the skull was laid on the mean head.
     """
 
     _: KW_ONLY
     outer: Array
     inner: Array
-    frame: HeadFrame
+    frame: MeanFrame
 
 
 def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Prediction:
@@ -95,7 +95,7 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     return Prediction(outer=outer, inner=inner, frame=frame)
 
 
-def _rays_beside(grid: RayGrid, frame: HeadFrame) -> Mask:
+def _rays_beside(grid: RayGrid, frame: MeanFrame) -> Mask:
     """Which of the `vault_rays` lie on a map or a little beside it, shape (m,)."""
     # the map reaches to half its width; a ray counts by its angle with the map's middle
     directions = vault_rays() @ frame.matrix.T
@@ -104,7 +104,7 @@ def _rays_beside(grid: RayGrid, frame: HeadFrame) -> Mask:
     return wanted
 
 
-def _rays_through(radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mask:
+def _rays_through(radius_map: RadiusMap, frame: MeanFrame, middle: Array) -> Mask:
     """Which rays pass through the map's hole, on the outer or the inner side of the mean vault (2, m)."""
     through = np.zeros(len(vault_rays()), bool)
     for radius in middle:
@@ -114,14 +114,14 @@ def _rays_through(radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mas
     return through
 
 
-def _radius_on(grid: RayGrid, frame: HeadFrame, points: Array) -> Array:
+def _radius_on(grid: RayGrid, frame: MeanFrame, points: Array) -> Array:
     """Radius of a surface given by points (k, 3), world, along the rays of a map, shape (M, M), mm."""
     away = points - grid.centre
     # scattered points of the surface -> the map's own rays, by a C1 interpolation over triangles
     index = np.indices((grid.n, grid.n)).reshape(2, -1).T
     values = CloughTocher2DInterpolator(grid.locate(away).T, np.linalg.norm(away, axis=1))(index)
     radius = values.reshape(grid.n, grid.n)
-    # what lies below the vault in the head frame was never learned
+    # what lies below the vault in the mean frame was never learned
     in_head = (grid.points(radius) - frame.origin) @ np.linalg.inv(frame.matrix).T
     with np.errstate(invalid="ignore"):
         below = in_head[..., 2] < np.cos(np.radians(VAULT_DEG)) * np.linalg.norm(in_head, axis=-1)

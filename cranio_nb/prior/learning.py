@@ -1,6 +1,6 @@
 """Intact skulls -> a shape prior.
 
-Frames: head (see `head_frame`), radii in mm of the mean head; world mm (LPS).
+Frames: mean head (see `mean_frame`), radii in mm of it; world mm (LPS).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from ..vault.head_frame import head_or_grid_axes
 from ..vault.opening_search import survey_openings
 from ..volume import Volume
 from .alignment import align, centre_frames, mean_head
-from .head_frame import HeadFrame, even_directions
+from .mean_frame import MeanFrame, even_directions
 from .shape_prior import Prior
 from .skull_points import SkullPoints, measure_outline, sample_surface, vault_coverage
 from .vault_radii import interpolate_radius, local_median, measure_vault, mirror_radii, without_outliers
@@ -111,7 +111,7 @@ class _Packed:
 
 def _lay_together(
     packed: list[_Packed], skulls: list[SkullPoints], report: Callable[[str, float], None]
-) -> tuple[SkullPoints, list[HeadFrame]]:
+) -> tuple[SkullPoints, list[MeanFrame]]:
     """The mean head and each skull's frame on it: laid on the first skull by similarities, then twice on the mean."""
     mean, directions = skulls[0], even_directions(4)
     for turn, affine in enumerate((False, True, True)):

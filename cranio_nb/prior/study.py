@@ -1,6 +1,6 @@
 """A folder of scans -> the intact skulls in it; a shape prior -> how well it predicts skulls it was not given.
 
-Frame: head (see `head_frame`); radii in mm of the mean head.
+Frame: mean head (see `mean_frame`); radii in mm of the mean head.
 """
 
 from __future__ import annotations

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cranio_nb.prior.head_frame import HeadFrame, even_directions
+from cranio_nb.prior.mean_frame import MeanFrame, even_directions
 from cranio_nb.prior.skull_points import measure_outline, sample_surface, vault_coverage
 from cranio_nb.vault.orientation import head_axes
 from cranio_nb.volume import Volume
@@ -16,11 +16,11 @@ def test_the_outline_of_a_hollow_ball_is_its_two_radii():
     radius = step * np.linalg.norm(np.indices((n, n, n)) - (n - 1) / 2, axis=0)
     ball = Volume((radius > 70) & (radius < 80), affine)
     directions = even_directions(3)
-    outer, inner = measure_outline(ball, HeadFrame(np.eye(3), centre), directions)
+    outer, inner = measure_outline(ball, MeanFrame(np.eye(3), centre), directions)
     assert np.isfinite(outer[directions[:, 2] > 0]).all() and np.isnan(outer[directions[:, 2] < -0.5]).all()
     assert np.nanmax(np.abs(outer - 80)) < step and np.nanmax(np.abs(inner - 70)) < step
     # in a frame twice as large the same ball has half the radius
-    larger, _ = measure_outline(ball, HeadFrame(2 * np.eye(3), centre), directions)
+    larger, _ = measure_outline(ball, MeanFrame(2 * np.eye(3), centre), directions)
     assert np.nanmax(np.abs(larger - 40)) < step
 
 
