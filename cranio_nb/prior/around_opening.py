@@ -56,7 +56,7 @@ class Prediction:
     frame: MeanFrame
 
 
-def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Prediction:
+def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap, axes: Array | None = None) -> Prediction:
     """The most likely vault around an opening, given the bone that is there.
 
     Parameters
@@ -66,6 +66,8 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
         Bool mask of the skull with the hole; all of it informs, not only what the map shows.
     radius_map : RadiusMap
         Of the opening.
+    axes : ndarray, shape (3, 3), optional
+        `Opening.head_axes`; found in the bone when not given.
 
     Returns
     -------
@@ -77,7 +79,8 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
         ``PriorDoesNotFit`` when the skull does not lie on the mean head; ``NoVault``.
     """
     # rays of different skulls can be compared only in the frame of the mean head
-    frame = align(sample_surface(bone, head_or_grid_axes(bone)), prior.mean)
+    axes = head_or_grid_axes(bone) if axes is None else axes
+    frame = align(sample_surface(bone, axes), prior.mean)
     if frame.misfit_mm > _MISFIT_MM:
         message = f"The skull lies {frame.misfit_mm:.1f} mm off the prior's mean head; {_MISFIT_MM:g} mm is the most."
         raise InputRefused("PriorDoesNotFit", message, "Design without the prior, or learn one from such skulls.")

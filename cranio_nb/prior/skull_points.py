@@ -13,6 +13,7 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..grid import inside_grid
 from ..vault.head_frame import head_or_grid_axes
 from ..vault.orientation import head_centre
 from ..volume import Volume
@@ -95,8 +96,8 @@ def sample_surface(bone: Volume, axes: Array) -> SkullPoints:
     return SkullPoints(outer=outer, inner=inner, centre=centre, axes=axes.T)
 
 
-def vault_coverage(bone: Volume) -> float:
-    """Share of the vault's rays that meet bone.
+def vault_in_image(bone: Volume) -> float:
+    """Share of the vault that lies inside the image, open or closed.
 
     Parameters
     ----------
@@ -106,15 +107,24 @@ def vault_coverage(bone: Volume) -> float:
     Returns
     -------
     float
-        0 to 1: next to 1 for an intact skull of a whole head.
+        0 to 1: 1 for a whole head.
 
     Raises
     ------
     InputRefused
         ``NoVault``.
+
+    Notes
+    -----
+    On a ray without bone the vault is taken to lie where it does on most others.
     """
-    on_vault = even_directions(4)[:, 2] > np.cos(np.radians(_VAULT_DEG))
-    return len(sample_surface(bone, head_or_grid_axes(bone)).outer) / int(np.count_nonzero(on_vault))
+    axes, directions = head_or_grid_axes(bone), even_directions(4)
+    centre = head_centre(bone, axes)
+    outer = measure_outline(bone, MeanFrame(axes.T, centre), directions)[0]
+    on_vault = directions[:, 2] > np.cos(np.radians(_VAULT_DEG))
+    expected = np.where(np.isfinite(outer), outer, np.nanmedian(outer))[on_vault]
+    points = centre + (directions[on_vault] @ axes) * expected[:, None]
+    return float(inside_grid(bone.to_voxel(points), bone.shape).mean())
 
 
 def measure_outline(bone: Volume, frame: MeanFrame, directions: Array) -> tuple[Array, Array]:

@@ -102,7 +102,7 @@ def read_intact_skulls(
         try:
             scan = read_ct(path)[0]
             bone = bone_of(scan, None if scan.voxels.dtype == bool else threshold)
-            check_intact(bone)
+            check_intact(bone, scan)
         except CranioError as error:
             skipped(path.name, error.message)
             continue
