@@ -124,13 +124,13 @@ RULES = (
         lambda s: Verdict(True, 0.5 + 0.5 * s.frame, "It lies at the base of the skull, where natural openings are."),
     ),
     Rule(
-        f"more bone stands behind {100 * _TWO_WALLS:g} % of its rim, and less than {100 * _HALF:g} % of it lies above"
-        " the base",
+        f"behind more than {100 * _TWO_WALLS:g} % of its rim stands another wall, and less than {100 * _HALF:g} % of it"
+        " lies above the base",
         lambda s: s.two_walls > _TWO_WALLS and s.on_vault < _HALF,
         lambda s: Verdict(True, 0.8, "It lies between walls one behind the other, as orbits and sinuses do."),
     ),
     Rule(
-        f"more bone stands behind {100 * _TWO_WALLS:g} % of its rim",
+        f"behind more than {100 * _TWO_WALLS:g} % of its rim stands another wall",
         lambda s: s.two_walls > _TWO_WALLS,
         lambda s: Verdict(
             False, 0.4, "It lies in the vault, but between walls one behind the other, as orbits and sinuses do."

@@ -78,3 +78,25 @@ def test_a_clock_goes_on_from_what_was_measured():
     clock = Clock({"read": 3.0})
     clock.lap("bone")
     assert clock.seconds["read"] == 3.0 and clock.seconds["bone"] >= 0
+
+
+def test_openings_are_chosen_by_number_and_the_others_left_open(skull, tmp_path):
+    write_nifti(skull("bilateral"), tmp_path / "skull.nii.gz")
+    both, second = prepare(tmp_path / "skull.nii.gz"), prepare(tmp_path / "skull.nii.gz", opening=[2])
+    assert [one.number for one in both.closed] == [1, 2] and both.left_open == ()
+    assert [one.number for one in second.closed] == [2] and [one.number for one in second.left_open] == [1]
+    np.testing.assert_array_equal(second.openings[0].sheet.voxels, both.openings[1].sheet.voxels)
+    assert second.sizes == both.sizes[1:]
+    # beside planes: numbers first, and what is left keeps its number
+    first, last = second.sizes[0].planes
+    part = prepare(tmp_path / "skull.nii.gz", opening=[2], planes=(first + 2, last))
+    assert [one.number for one in part.closed] == [2] and part.sizes[0].planes == (first + 2, last)
+    with pytest.raises(InputRefused, match=r"no opening 3.*Opening 1.*Opening 2") as refused:
+        prepare(tmp_path / "skull.nii.gz", opening=[3])
+    assert refused.value.code == "NoSuchOpening"
+
+
+def test_thick_slices_are_said_before_a_design(scan):
+    case = prepare(scan)  # its slices are 3 mm apart
+    (said,) = [found for found in case.load.findings if found.code == "ThickSlices"]
+    assert said.severity == "warning" and said.values["slice_mm"] == pytest.approx(3.0)
