@@ -48,6 +48,8 @@ THRESHOLDS_HU = (50.0, 3000.0)
 """Between which a threshold of bone makes sense: above soft tissue and below metal."""
 SIZES = ("tiny", "class", "full")
 """Grids of the synthetic head."""
+HEADS = ("face", "simple")
+"""The synthetic heads; `simple` is a dome without a face."""
 CASE = ("ct", "mask.nii.gz", "truth.nii.gz", "truth.json")
 """What a synthetic case leaves in its folder."""
 
@@ -91,6 +93,9 @@ opening = click.option(
     type=click.IntRange(1),
     metavar="N",
     help="Close opening N of the list of `cranio-nb inspect`, doubtful or natural ones too; may be repeated.",
+)
+head = click.option(
+    "--head", type=click.Choice(HEADS), default="face", show_default=True, help="simple: a dome without a face."
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 
