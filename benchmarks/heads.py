@@ -28,7 +28,8 @@ from scipy import ndimage
 
 from cranio_nb.errors import CranioError
 from cranio_nb.stages.segmentation import bone_of
-from cranio_nb.vault.opening_search import JudgedOpening, require_cut, survey_openings
+from cranio_nb.vault.opening_choice import JudgedOpening, choose_openings
+from cranio_nb.vault.opening_search import survey_openings
 from cranio_nb.volume import Volume
 from data_synth import AROUND, SIZES, Case, Pose, face_case
 
@@ -68,7 +69,7 @@ def judge_head(seed: int, size: str, holes: bool) -> dict[str, Any]:
     scan = Volume(case.hu, case.affine)
     try:
         survey = survey_openings(bone_of(scan, None), scan=scan)
-        designed = require_cut(survey)
+        designed = choose_openings(survey)
     except CranioError as error:
         if error.code != "NoOpening":
             return row | {"outcome": "refused", "words": error.code}
@@ -99,7 +100,9 @@ def _compared(
     missed = [n for n in range(len(true)) if not any(row[n] for row in over)]
     false = [one for one, row in zip(designed, over, strict=True) if not any(row)]
     listed = [
-        n for n in missed if any(one.verdict.doubtful and (one.opening.sheet.voxels & near[n]).any() for one in survey)
+        n
+        for n in missed
+        if any(one.verdict.kind == "doubtful" and (one.opening.sheet.voxels & near[n]).any() for one in survey)
     ]
     if false:
         return {"outcome": "false", "words": " ".join(one.verdict.reason for one in false)}

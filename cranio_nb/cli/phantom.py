@@ -65,7 +65,11 @@ def _cut(source: Path, defect: str, seed: int, allow: tuple[str, ...]) -> Case:
     """Cut a hole into a given intact scan or mask."""
     from data_synth import cut_case
 
+    from ..pipeline.survey import survey_scan
+    from ..vault.opening_choice import check_intact
+
     scan, load = read_ct(source, allow=allow)
+    check_intact(survey_scan(scan).found, "A case with a known truth is cut from an intact skull.")
     try:
         return cut_case(scan.voxels, scan.affine, defect, seed, is_mask=load.kind == "mask")
     except ValueError as error:
