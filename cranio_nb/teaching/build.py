@@ -52,7 +52,8 @@ def build(folder: Path, only: str = "") -> list[Path]:
     """
     made = []
     for path, notebook in _notebooks(folder, only):
-        _write(path, notebook)
+        nbformat.validate(notebook)
+        replace_file(path, (nbformat.writes(notebook) + "\n").encode())
         made.append(path)
     return made
 
@@ -207,9 +208,3 @@ def _comparable(notebook: NotebookNode) -> list[Any]:
             written.append((output.output_type, output.get("text"), output.get("ename"), data.get("text/plain"), alts))
         found.append((cell.id, cell.cell_type, cell.source, tags(cell), cell.get("execution_count"), written))
     return found
-
-
-def _write(path: Path, notebook: NotebookNode) -> None:
-    """Write a notebook whole or not at all."""
-    nbformat.validate(notebook)
-    replace_file(path, (nbformat.writes(notebook) + "\n").encode())

@@ -16,7 +16,7 @@ from pydicom import uid
 from pydicom.encaps import encapsulate
 from pydicom.pixels import get_decoder
 
-from .compressed_stream import JPEG, JPEG2000, JPEG_LS, check_stream, read_part_length
+from .compressed_stream import JPEG, JPEG2000, JPEG_LS, CompressedStream, check_stream
 from .parse import PixelPlace
 from .slice_header import SliceHeader
 
@@ -59,14 +59,15 @@ def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np
         Where the stream holds more than the image needs.
     """
     frame = _frame_bytes(header, place, data)
+    stream = CompressedStream(frame)
     if place.syntax != uid.RLELossless:
-        check_stream(frame, place.syntax, header.rows, header.cols, header.bits[0])
+        check_stream(stream, place.syntax, header.rows, header.cols, header.bits[0])
     if place.syntax in JPEG2000:
         import openjpeg
 
         return _signed_as(openjpeg.decode(frame), header)
     if place.syntax in JPEG:
-        return _signed_as(_jpeg(frame, place.syntax), header)
+        return _signed_as(_jpeg(stream, place.syntax), header)
     if place.syntax in JPEG_LS:
         import jpeg_ls
 
@@ -74,14 +75,14 @@ def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np
     return _run_lengths(frame, header)
 
 
-def _jpeg(frame: bytes, syntax: str) -> NDArray[np.integer]:
+def _jpeg(stream: CompressedStream, syntax: str) -> NDArray[np.integer]:
     """The numbers of a JPEG image; of a lossless one, as two decoders read them alike."""
     import imagecodecs
 
-    numbers = imagecodecs.jpeg8_decode(frame)
+    numbers = imagecodecs.jpeg8_decode(stream.data)
     # the second one knows no streams in parts; there the marks between the parts show what is lost
-    if syntax in _LOSSLESS_JPEG and not read_part_length(frame):
-        if not np.array_equal(numbers, imagecodecs.jpegsof3_decode(frame)):
+    if syntax in _LOSSLESS_JPEG and not stream.part_length:
+        if not np.array_equal(numbers, imagecodecs.jpegsof3_decode(stream.data)):
             raise ValueError("the stream is damaged: two decoders read other numbers")
     return numbers
 

@@ -12,7 +12,7 @@ from pydicom.uid import JPEG2000Lossless, JPEGBaseline8Bit, JPEGLosslessSV1, JPE
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom.compressed_stream import check_stream, read_declared, read_part_length
+from cranio_nb.readers.dicom.compressed_stream import CompressedStream, check_stream
 
 END = b"\xff\xd9"
 
@@ -92,7 +92,7 @@ def test_a_lossless_jpeg_out_of_step_is_refused(seed):
     stream = STREAMS[JPEGLosslessSV1](ds)
     at = int(np.random.default_rng(seed).integers(len(stream) // 3, len(stream) - 60))
     bad = stream[:at] + stream[at + 7 :]
-    check_stream(bad, JPEGLosslessSV1, 42, 48, 16)
+    check_stream(CompressedStream(bad), JPEGLosslessSV1, 42, 48, 16)
     a, b = imagecodecs.jpeg8_decode(bad), imagecodecs.jpegsof3_decode(bad)
     assert not np.array_equal(a, b)
 
@@ -113,18 +113,18 @@ def in_parts(rows, n_parts, lost=()):
 
 def test_a_stream_in_parts_is_read_and_misses_none():
     stream, numbers = in_parts(4, 11)
-    assert read_part_length(stream) == 124
-    check_stream(stream, JPEGLosslessSV1, 44, 31, 16)
+    assert CompressedStream(stream).part_length == 124
+    check_stream(CompressedStream(stream), JPEGLosslessSV1, 44, 31, 16)
     np.testing.assert_array_equal(imagecodecs.jpeg8_decode(stream), numbers)
     for lost in ((3,), (10,), tuple(range(1, 9))):
         with pytest.raises(ValueError, match="parts"):
-            check_stream(in_parts(4, 11, lost)[0], JPEGLosslessSV1, 44, 31, 16)
+            check_stream(CompressedStream(in_parts(4, 11, lost)[0]), JPEGLosslessSV1, 44, 31, 16)
 
 
 def test_a_baseline_stream_of_other_form_is_refused():
     grey = np.add.outer(np.arange(24), np.arange(40)).astype(np.uint8)
     stream = imagecodecs.jpeg8_encode(grey)
-    check_stream(stream, JPEGBaseline8Bit, 24, 40, 8)
+    check_stream(CompressedStream(stream), JPEGBaseline8Bit, 24, 40, 8)
     colours = imagecodecs.jpeg8_encode(np.dstack([grey] * 3))
     for bad, syntax, allocated, word in (
         (stream, JPEGLosslessSV1, 8, "process"),
@@ -135,9 +135,9 @@ def test_a_baseline_stream_of_other_form_is_refused():
         (b"", JPEGBaseline8Bit, 8, "process"),
     ):
         with pytest.raises(ValueError, match=word):
-            check_stream(bad, syntax, 24, 40, allocated)
+            check_stream(CompressedStream(bad), syntax, 24, 40, allocated)
     with pytest.raises(ValueError, match="size"):
-        check_stream(stream, JPEGBaseline8Bit, 40, 24, 8)
+        check_stream(CompressedStream(stream), JPEGBaseline8Bit, 40, 24, 8)
 
 
 @pytest.mark.parametrize("size", [(42, 48), (300, 7), (1, 65535)])
@@ -145,9 +145,9 @@ def test_a_baseline_stream_of_other_form_is_refused():
 def test_the_size_in_a_stream_is_read_past_other_segments(marker, size):
     comment = b"\xff\xfe\x00\x06text" + b"\xff"  # a comment, then a byte of filling
     frame = bytes([0xFF, marker, 0, 11, 12]) + size[0].to_bytes(2, "big") + size[1].to_bytes(2, "big") + b"\1"
-    found = read_declared(b"\xff\xd8" + comment + frame + bytes(50))
+    found = CompressedStream(b"\xff\xd8" + comment + frame + bytes(50)).image
     assert (found.rows, found.cols, found.bits, found.components) == (*size, 12, 1)
 
 
 def test_a_stream_without_a_size_has_none():
-    assert read_declared(b"") is None and read_declared(b"\xff\xd8" + bytes(100)) is None
+    assert all(CompressedStream(data).image is None for data in (b"", b"\xff\xd8" + bytes(100)))
