@@ -31,7 +31,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import comb
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,7 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
+from ..option import Option
 from ..prior.around_opening import predict_around
 from ..prior.file import load_prior
 from ..prior.shape_prior import Prior
@@ -91,10 +92,12 @@ def pieces(
     bone: Volume,
     openings: Sequence[Opening],
     *,
-    second_mm: float = 1.3,
-    third_mm: float = 1.8,
-    mirror_mm: float = 1.6,
-    prior: str = "",
+    # beyond 20 mm the plate no longer follows the bone that it lies on
+    second_mm: Annotated[float, Option("Smoothing by second order; 0 for none.", 0, 20, "mm")] = 1.3,
+    third_mm: Annotated[float, Option("Smoothing by third order; 0 for none.", 0, 20, "mm")] = 1.8,
+    mirror_mm: Annotated[float, Option("Smoothing towards the other side; 0 for none.", 0, 20, "mm")] = 1.6,
+    # no system takes longer paths
+    prior: Annotated[str, Option("File of `cranio-nb prior learn`; empty for none.", 0, 4096, "characters")] = "",
 ) -> Iterator[Piece]:
     """Close each opening by bending thin plates across it.
 

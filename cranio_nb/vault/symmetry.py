@@ -168,6 +168,7 @@ def find_symmetry_plane(bone: Volume, centre: Array, axes: Array | None = None) 
     """
     surface = measure_outer_surface(bone, centre, axes)
     offsets = surface.offsets
+    _check_pairs(len(offsets), surface)  # no more than there are rays that meet bone
     # from the best of many planes, steps until it is still
     normal, shift = _best_start(surface, offsets[::3])
     n_iter, moved = 0, np.inf
