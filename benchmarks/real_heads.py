@@ -57,7 +57,7 @@ def outcome(scan: Volume) -> str:
         found = find_openings(bone_of(scan, None), scan=scan)
     except CranioError as error:
         return error.code
-    return "designed: " + ", ".join(f"{one.diameter_mm:.0f} mm" for one in found)
+    return f"{len(found)} designed in planes " + ", ".join(str(one.planes) for one in found)
 
 
 def intact(data: Path, only: str) -> Iterator[tuple[str, Path, bool]]:
