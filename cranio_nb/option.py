@@ -94,8 +94,11 @@ class Option:
         """
         if (self.low, self.high) == (-inf, inf):
             return ""
-        ends = f"{self.low:g} to {self.high:g}" if self.low > -inf < self.high < inf else ""
-        ends = ends or (f"at least {self.low:g}" if self.low > -inf else f"at most {self.high:g}")
+        low, high = (f"{end:.12g}" for end in (self.low, self.high))
+        if self.low > -inf and self.high < inf:
+            ends = f"{low} to {high}"
+        else:
+            ends = f"at least {low}" if self.low > -inf else f"at most {high}"
         return f"{ends} {self.unit}".rstrip()
 
     @property
@@ -218,7 +221,5 @@ def _shown(value: Any) -> str:
         return str(value).lower() if isinstance(value, bool) else "null"
     if isinstance(value, int):
         return f"{value}" if abs(value) < _LONG else f"a whole number of {value.bit_length()} bits"
-    return f"{value:g}" if isinstance(value, float) else _KINDS.get(type(value), type(value).__name__)
-
-
-_KINDS = {str: "text", list: "a list", dict: "an object"}
+    words = {"str": "text", "list": "a list", "dict": "an object"}
+    return f"{value:g}" if isinstance(value, float) else words.get(type(value).__name__, type(value).__name__)

@@ -8,22 +8,27 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import InputRefused
+from ..option import Option
 from ..readers import read_ct
-from .options import CASE, PATH, SIZES, allow, check_writes, debug
+from .options import CASE, PATH, SIZES, allow, check_writes, debug, number
 
 if TYPE_CHECKING:
     from data_synth import Case
+
+
+SEED = Option("Chooses head, place, size and rim.", 0, 2**32 - 1, whole=True, default=0)
+"""32 bits, which every generator of random numbers takes."""
 
 
 @click.command()
 @click.argument("out", type=PATH)
 @click.option("--size", type=click.Choice(SIZES), default="class", show_default=True, help="Grid of the phantom.")
 @click.option("--defect", default="unilateral", show_default=True, help="Kind of hole, e.g. frontal, vertex, large.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Chooses head, place, size and rim.")
+@number("--seed", SEED)
 @click.option("--from", "source", type=PATH, metavar="CT", help="Cut this intact scan or mask instead of a phantom.")
 @allow
 @debug
-def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, allow: tuple[str, ...]) -> None:
+def phantom(out: Path, size: str, defect: str, seed: int | None, source: Path | None, allow: tuple[str, ...]) -> None:
     """Write a head with a hole, and the bone that is missing.
 
     Files: OUT/ct (DICOM; OUT/mask.nii.gz for a mask), OUT/truth.nii.gz and OUT/truth.json.
@@ -40,6 +45,7 @@ def phantom(out: Path, size: str, defect: str, seed: int, source: Path | None, a
     from ..output.staging import staged
     from .console import progress_bar
 
+    seed = SEED.default if seed is None else seed
     if defect not in DEFECTS:
         raise click.BadParameter(f"there is none named {defect!r}; choose one of {', '.join(DEFECTS)}.")
     results = (*design_folder.FILES, *comparison_folder.FILES)
