@@ -57,7 +57,7 @@ def test_the_path_that_is_missing_is_called_as_on_the_command_line(name, called,
 @pytest.mark.parametrize("value", ["-500", "49.9", "3001", "nan", "inf", "-inf"])
 def test_a_threshold_that_is_none_of_bone_is_refused_with_its_range(value):
     result = cranio("inspect", "scan", "--threshold", value)
-    assert result.exit_code == 2 and "Give 50 to 3000" in " ".join(result.stderr.split())
+    assert result.exit_code == 2 and "Give a number from 50 to 3000 HU" in " ".join(result.stderr.split())
 
 
 def test_a_tilde_is_the_home_folder(tmp_path, monkeypatch):
