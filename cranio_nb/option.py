@@ -181,8 +181,8 @@ def declared(function: Callable[..., Any]) -> dict[str, Option]:
 
     Raises
     ------
-    NameError
-        Where the text of an annotation that holds an `Option` names what its module does not know.
+    InputRefused
+        ``BadMethod`` where the text of an annotation that holds an `Option` names what its module does not know.
 
     Examples
     --------
@@ -202,7 +202,11 @@ def _declaration(parameter: inspect.Parameter, function: Callable[..., Any]) -> 
     """The option in the annotation of a parameter; an empty one where there is none."""
     hint = parameter.annotation
     if isinstance(hint, str) and Option.__name__ in hint:  # text, where annotations are not run
-        hint = eval(hint, getattr(inspect.unwrap(function), "__globals__", {}))
+        try:
+            hint = eval(hint, getattr(inspect.unwrap(function), "__globals__", {}))
+        except NameError as error:
+            message = f"The declaration of the option {parameter.name} cannot be read: {error}."
+            raise InputRefused("BadMethod", message, "Import what it names at the top of its module.") from None
     parts = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
     return next((part for part in parts if isinstance(part, Option)), Option(""))
 

