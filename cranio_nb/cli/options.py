@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -46,6 +47,8 @@ PATH = UserPath(path_type=Path)
 """Of every path on the command line."""
 SIZES = ("tiny", "class", "full")
 """Grids of the synthetic head."""
+HEADS = ("face", "simple")
+"""The synthetic heads; `simple` is a dome without a face."""
 CASE = ("ct", "mask.nii.gz", "truth.nii.gz", "truth.json")
 """What a synthetic case leaves in its folder."""
 
@@ -113,6 +116,16 @@ label = number("--label", LABEL)
 threshold = number("--threshold", THRESHOLD)
 truth = click.option(
     "--truth", type=PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against."
+)
+opening = click.option(
+    "--opening",
+    multiple=True,
+    type=click.IntRange(1),
+    metavar="N",
+    help="Close opening N of the list of `cranio-nb inspect`, doubtful or natural ones too; may be repeated.",
+)
+head = click.option(
+    "--head", type=click.Choice(HEADS), default="face", show_default=True, help="simple: a dome without a face."
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 
@@ -190,6 +203,27 @@ def parse_planes(text: str | None) -> tuple[int, int] | None:
         words = f"two plane numbers A:B are wanted, each {PLANE.limits}, the lower one first."
         raise click.BadParameter(words, param_hint="--planes")
     return first, last
+
+
+@contextmanager
+def opening_checked() -> Iterator[None]:
+    """Make a number that no opening has a fault of the option --opening.
+
+    Returns
+    -------
+    context manager
+
+    Raises
+    ------
+    click.BadParameter
+        With the list of the openings that there are.
+    """
+    try:
+        yield
+    except InputRefused as error:
+        if error.code != "NoSuchOpening":
+            raise
+        raise click.BadParameter(str(error), param_hint="--opening") from None
 
 
 def check_reads(**reads: Path | None) -> None:

@@ -30,6 +30,7 @@ def design(
     bone: Volume,
     openings: Sequence[Opening] | None = None,
     *,
+    scan: Volume | None = None,
     method: str = "slicewise",
     preset: str = "default",
     progress: Progress | None = None,
@@ -43,6 +44,8 @@ def design(
         Bool mask of the skull, planes rising to the top of the head.
     openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
+    scan : Volume, optional
+        HU on the same grid, by which openings that are not given are found; see `find_openings`.
     method : str
         A name of the catalogue.
     preset : str
@@ -76,7 +79,7 @@ def design(
     """
     check_request(method, preset, options)
     _check_bone(bone)
-    openings = find_openings(bone) if openings is None else openings
+    openings = find_openings(bone, scan=scan) if openings is None else openings
     _check_openings(bone, openings)
     # what is asked for goes before the preset, and the preset before the defaults
     parameters = default_options(method) | preset_options(method, preset, bone) | options

@@ -115,7 +115,7 @@ def pieces(
         ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
     """
     # one plane for the whole skull, then each opening mirrored across it
-    plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre)
+    plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre, openings[0].head_axes)
     made = [_mirrored(bone, opening, plane, fit_rim) for opening in openings]
     if not partial:
         _check_whole(made)

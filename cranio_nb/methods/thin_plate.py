@@ -249,7 +249,7 @@ def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_arra
 def _symmetry(bone: Volume, opening: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
     """The symmetry plane, if there is one, and what to record of it."""
     try:
-        plane = symmetry.find_symmetry_plane(bone, opening.head_centre)
+        plane = symmetry.find_symmetry_plane(bone, opening.head_centre, opening.head_axes)
     # a skull with too little of the other side still gets its plate, without that term
     except InputRefused as refused:
         return None, {"unused": refused.message}
@@ -266,7 +266,7 @@ def _plate(
     # all that is known of the vault on the rays: bone, its mirror image, the prior's mean
     radius_map = radius_measurement.measure_around(bone, opening)
     mirrored = None if plane is None else _other_side(bone, radius_map, plane)
-    expected = None if learned is None else _expected(bone, radius_map, learned)
+    expected = None if learned is None else _expected(bone, radius_map, learned, opening.head_axes)
     # a coarser grid of nodes for the plate; its hole keeps every node that any missing ray touches
     nodes = max(1, round(_NODES / radius_map.step_mm))
     hole = thin_map(radius_map.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
@@ -287,10 +287,10 @@ def _other_side(bone: Volume, radius_map: RadiusMap, plane: SymmetryPlane) -> tu
     return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
 
 
-def _expected(bone: Volume, radius_map: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
+def _expected(bone: Volume, radius_map: RadiusMap, learned: Prior, axes: Array | None) -> tuple[Array, Array] | None:
     """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
     # the prior is known on its coarser rays: blurred over their spacing, it has no facets
-    predicted = predict_around(learned, bone, radius_map)
+    predicted = predict_around(learned, bone, radius_map, axes)
     if not (np.isfinite(predicted.outer) & radius_map.hole).any():
         return None
     outer, inner = (

@@ -18,6 +18,9 @@ from ...evaluation.against_truth import TruthCheck, check_truth
 from ...mesh import OUTER
 from ...methods.catalogue import options_of as options_declared
 from ...methods.design import design
+from ...output.files import json_text
+from ...output.guard import check_writes
+from ...output.staging import replace_file
 from ...vault import opening_search
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
@@ -69,10 +72,23 @@ class Tuner(Panel):
         -------
         Path
             The file.
+
+        Raises
+        ------
+        CannotWrite
+            Where the file holds something else than such parameters, or cannot be written.
         """
         path = Path(path)
-        path.write_text(json.dumps(self.parameters, indent=2) + "\n", encoding="utf-8")
+        check_writes(path.parent, (path.name,), own=lambda folder, name: self._is_own(folder / name))
+        replace_file(path, (json_text(self.parameters) + "\n").encode())
         return path
+
+    def _is_own(self, path: Path) -> bool:
+        """Whether a file holds parameters of the same names, as an earlier `save` wrote them."""
+        try:
+            return not path.is_symlink() and set(json.loads(path.read_text("utf-8"))) == set(self.parameters)
+        except (OSError, ValueError, TypeError, RecursionError):
+            return False
 
 
 def tuner(case: Case) -> Tuner:
