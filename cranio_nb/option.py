@@ -94,8 +94,11 @@ class Option:
         """
         if (self.low, self.high) == (-inf, inf):
             return ""
-        ends = f"{self.low:g} to {self.high:g}" if self.low > -inf < self.high < inf else ""
-        ends = ends or (f"at least {self.low:g}" if self.low > -inf else f"at most {self.high:g}")
+        low, high = (f"{end:.12g}" for end in (self.low, self.high))
+        if self.low > -inf and self.high < inf:
+            ends = f"{low} to {high}"
+        else:
+            ends = f"at least {low}" if self.low > -inf else f"at most {high}"
         return f"{ends} {self.unit}".rstrip()
 
     @property
@@ -178,8 +181,8 @@ def declared(function: Callable[..., Any]) -> dict[str, Option]:
 
     Raises
     ------
-    NameError
-        Where the text of an annotation that holds an `Option` names what its module does not know.
+    InputRefused
+        ``BadMethod`` where the text of an annotation that holds an `Option` names what its module does not know.
 
     Examples
     --------
@@ -199,7 +202,11 @@ def _declaration(parameter: inspect.Parameter, function: Callable[..., Any]) -> 
     """The option in the annotation of a parameter; an empty one where there is none."""
     hint = parameter.annotation
     if isinstance(hint, str) and Option.__name__ in hint:  # text, where annotations are not run
-        hint = eval(hint, getattr(inspect.unwrap(function), "__globals__", {}))
+        try:
+            hint = eval(hint, getattr(inspect.unwrap(function), "__globals__", {}))
+        except NameError as error:
+            message = f"The declaration of the option {parameter.name} cannot be read: {error}."
+            raise InputRefused("BadMethod", message, "Import what it names at the top of its module.") from None
     parts = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
     return next((part for part in parts if isinstance(part, Option)), Option(""))
 
@@ -218,7 +225,5 @@ def _shown(value: Any) -> str:
         return str(value).lower() if isinstance(value, bool) else "null"
     if isinstance(value, int):
         return f"{value}" if abs(value) < _LONG else f"a whole number of {value.bit_length()} bits"
-    return f"{value:g}" if isinstance(value, float) else _KINDS.get(type(value), type(value).__name__)
-
-
-_KINDS = {str: "text", list: "a list", dict: "an object"}
+    words = {"str": "text", "list": "a list", "dict": "an object"}
+    return f"{value:g}" if isinstance(value, float) else words.get(type(value).__name__, type(value).__name__)

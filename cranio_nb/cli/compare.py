@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     "methods",
     multiple=True,
     metavar="NAME",
-    help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated.  [default: all]",
+    help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated; see `cranio-nb methods`.  [default: all]",
 )
 @opening
 @mask

@@ -28,7 +28,12 @@ from .options import (
 @click.option("--out", type=PATH, required=True, help="Folder to write to; made if missing.")
 @click.option("--method", type=MethodName(), default="slicewise", show_default=True)
 @click.option("--preset", default="default", show_default=True, metavar="NAME", help="paper: as published in 2011.")
-@click.option("--params", type=PATH, metavar="JSON", help="File with options of the method: {name: value, ...}.")
+@click.option(
+    "--params",
+    type=PATH,
+    metavar="JSON",
+    help="File with options of the method, {name: value, ...}; see `cranio-nb methods`.",
+)
 @click.option("--prior", type=PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate.")
 @opening
 @click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
@@ -64,6 +69,7 @@ def design(
       cranio-nb design skull.nii.gz --mask --preset paper --out out
       cranio-nb design scans/head_ct --opening 2 --out out
       cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
+      cranio-nb design scans/head_ct --params options.json --out out
     """
     from ..output.design_folder import FILES, write_outputs
     from ..output.staging import staged

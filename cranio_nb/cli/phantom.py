@@ -8,24 +8,29 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import InputRefused
+from ..option import Option
 from ..readers import read_ct
-from .options import CASE, PATH, SIZES, allow, check_writes, debug, head
+from .options import CASE, PATH, SIZES, allow, check_writes, debug, head, number
 
 if TYPE_CHECKING:
     from data_synth import Case
+
+
+SEED = Option("Chooses head, place, size and rim.", 0, 2**32 - 1, whole=True, default=0)
+"""32 bits, which every generator of random numbers takes."""
 
 
 @click.command()
 @click.argument("out", type=PATH)
 @click.option("--size", type=click.Choice(SIZES), default="class", show_default=True, help="Grid of the phantom.")
 @click.option("--defect", default="unilateral", show_default=True, help="Kind of hole, e.g. frontal, vertex, large.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Chooses head, place, size and rim.")
+@number("--seed", SEED)
 @click.option("--from", "source", type=PATH, metavar="CT", help="Cut this intact scan or mask instead of a phantom.")
 @head
 @allow
 @debug
 def phantom(
-    out: Path, size: str, defect: str, seed: int, source: Path | None, head: str, allow: tuple[str, ...]
+    out: Path, size: str, defect: str, seed: int | None, source: Path | None, head: str, allow: tuple[str, ...]
 ) -> None:
     """Write a head with a hole, and the bone that is missing.
 
@@ -43,6 +48,7 @@ def phantom(
     from ..output.staging import staged
     from .console import progress_bar
 
+    seed = SEED.default if seed is None else seed
     if defect not in DEFECTS:
         raise click.BadParameter(f"there is none named {defect!r}; choose one of {', '.join(DEFECTS)}.")
     results = (*design_folder.FILES, *comparison_folder.FILES)

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
@@ -58,13 +58,13 @@ class Method:
         Name -> options, or a function of the bone that returns them. The preset "default" is not among them: it is
         the defaults of the options.
     options : dict
-        Name -> what is declared of it; without those that every method has.
+        Name -> what is declared of it, as far as it was read off already (`options_of`).
     """
 
     name: str
     pieces: Pieces
     presets: Mapping[str, Preset]
-    options: Mapping[str, Option]
+    options: Mapping[str, Option] = field(default_factory=dict)
 
 
 _added: dict[str, Method] = {}  # by `add_method`, in this process
@@ -114,11 +114,15 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
     if pieces is None:
         return lambda function: add_method(name, function, presets=presets)
     made = _checked(name, pieces, presets or {})
+    options = declared(pieces)
+    if off := [option for option, what in options.items() if what.limits and not what.allows(what.default)]:
+        message = f"The method {name!r} has a default of {', '.join(off)} beyond its own range."
+        raise InputRefused("BadMethod", message, "Declare a range that holds it.")
     before = _added.get(name)
     if (before is None and name in method_names()) or (before and _place(before.pieces) != _place(pieces)):
         remedy = f"Choose a name other than {', '.join(method_names())}."
         raise InputRefused("MethodNameTaken", f"There is a method named {name!r} already.", remedy)
-    _added[name] = made
+    _added[name] = replace(made, options=options)
     return pieces
 
 
@@ -282,7 +286,8 @@ def options_of(name: str) -> dict[str, Option]:
     >>> options_of("slicewise")["skip_mm"].limits
     '0 to 20 mm'
     """
-    return {**find_method(name).options, **COMMON}
+    found = find_method(name)
+    return {**(found.options or declared(found.pieces)), **COMMON}
 
 
 def check_options(name: str, options: Mapping[str, Any]) -> None:
@@ -312,16 +317,6 @@ def _offered() -> dict[str, EntryPoint]:
     return {point.name: point for point in entry_points(group=GROUP)}
 
 
-def _undeclared(pieces: Pieces) -> str:
-    """What is wrong with the declarations of a method's options; empty where nothing is."""
-    try:
-        options = declared(pieces)
-    except NameError as error:
-        return f"{error}; import what its annotations name at the top of its module"
-    off = [option for option, what in options.items() if what.limits and not what.allows(what.default)]
-    return f"a default of {', '.join(off)} that is not allowed" if off else ""
-
-
 def _place(function: Pieces) -> tuple[str, str]:
     """Where a function was written: its module and its name there."""
     return getattr(function, "__module__", ""), getattr(function, "__qualname__", "")
@@ -339,13 +334,11 @@ def _checked(name: Any, pieces: Any, presets: Any) -> Method:
         problem = "does not take bone and openings as its first two parameters"
     elif loose:
         problem = f"has parameters that are no keyword-only options with a default: {', '.join(loose)}"
-    elif wrong := _undeclared(pieces):
-        problem = f"declares what cannot be: {wrong}"
     elif COMMON.keys() & {p.name for p in parameters}:
         problem = f"has an option that `design` gives to every method: {', '.join(COMMON)}"
     elif not isinstance(presets, Mapping) or "default" in presets:
         problem = "needs presets as a dict of names other than 'default'"
     else:
-        return Method(name, pieces, presets, declared(pieces))
+        return Method(name, pieces, presets)
     remedy = "Write it as pieces(bone, openings, *, option=default, ...), which yields a Piece for each opening."
     raise InputRefused("BadMethod", f"The method {name!r} {problem}.", remedy)

@@ -23,6 +23,7 @@ _LARGEST_DEG = 115.0  # from the map's middle: further out the map tears
 _SOUND = 0.85  # of the usual thickness: bone below it is a bevelled or thinned rim
 _RIM_MM = 6.0  # beside a hole up to which bone may be its rim
 _AROUND_MM = 20.0  # of bone beside the rim that gives the usual thickness
+_FLAT_MM = 1e-3  # across the line of sight: an opening of less is a point
 _LEAST_RAYS = 12  # into a hole, and to bone beside it: some 2 mm across
 
 
@@ -97,8 +98,13 @@ def _check_hole(grid: RayGrid, hole: NDArray[np.bool_], seen: NDArray[np.bool_])
         problem = "is wider than half the head"
     else:
         return
+    raise _no_hole(problem)
+
+
+def _no_hole(problem: str) -> InputRefused:
+    """The refusal of an opening that is none."""
     message = f"Seen from inside the head the opening {problem}."
-    raise InputRefused("NoHole", message, "Give an opening as `find_openings` finds it; with planes, more of them.")
+    return InputRefused("NoHole", message, "Give an opening as `find_openings` finds it; with planes, more of them.")
 
 
 def _axes(opening: Opening, bone: Volume) -> NDArray[np.float64]:
@@ -107,6 +113,8 @@ def _axes(opening: Opening, bone: Volume) -> NDArray[np.float64]:
     points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)[::7])
     flat = points - points.mean(axis=0)
     flat = flat - np.outer(flat @ middle, middle)
+    if np.abs(flat).max() < _FLAT_MM:  # the place of the map's axes would hinge on rounding
+        raise _no_hole("is no more than a few voxels")
     long_side = np.linalg.svd(flat, full_matrices=False)[2][0]
     long_side = long_side * (1.0 if long_side @ bone.edges[0] >= 0 else -1.0)
     return np.stack([np.cross(long_side, middle), long_side, middle])
