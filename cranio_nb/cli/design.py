@@ -7,7 +7,20 @@ from pathlib import Path
 import click
 
 from .method_name import MethodName, check_asked
-from .options import PATH, allow, check_writes, debug, label, mask, parse_planes, read_params, threshold, truth
+from .options import (
+    PATH,
+    allow,
+    check_writes,
+    debug,
+    label,
+    mask,
+    opening,
+    opening_checked,
+    parse_planes,
+    read_params,
+    threshold,
+    truth,
+)
 
 
 @click.command()
@@ -17,6 +30,7 @@ from .options import PATH, allow, check_writes, debug, label, mask, parse_planes
 @click.option("--preset", default="default", show_default=True, metavar="NAME", help="paper: as published in 2011.")
 @click.option("--params", type=PATH, metavar="JSON", help="File with options of the method: {name: value, ...}.")
 @click.option("--prior", type=PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate.")
+@opening
 @click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
 @truth
 @mask
@@ -31,6 +45,7 @@ def design(
     preset: str,
     params: Path | None,
     prior: Path | None,
+    opening: tuple[int, ...],
     planes: str | None,
     truth: Path | None,
     mask: bool,
@@ -47,6 +62,7 @@ def design(
     Examples:
       cranio-nb design scans/head_ct --out out
       cranio-nb design skull.nii.gz --mask --preset paper --out out
+      cranio-nb design scans/head_ct --opening 2 --out out
       cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
     """
     from ..output.design_folder import FILES, write_outputs
@@ -61,7 +77,7 @@ def design(
     learned = options.get("prior")
     reads = {"scan": scan, "truth": truth, "params": params, "prior": Path(learned) if learned else None}
     check_writes(out, FILES, reads)
-    with progress_bar() as progress:
+    with progress_bar() as progress, opening_checked():
         result = run_design(
             scan,
             method=method,
@@ -70,6 +86,7 @@ def design(
             mask=mask or None,
             label=label,
             threshold=threshold,
+            opening=opening,
             planes=between,
             truth=truth,
             allow=allow,

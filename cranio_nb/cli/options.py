@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,8 @@ THRESHOLDS_HU = (50.0, 3000.0)
 """Between which a threshold of bone makes sense: above soft tissue and below metal."""
 SIZES = ("tiny", "class", "full")
 """Grids of the synthetic head."""
+HEADS = ("face", "simple")
+"""The synthetic heads; `simple` is a dome without a face."""
 CASE = ("ct", "mask.nii.gz", "truth.nii.gz", "truth.json")
 """What a synthetic case leaves in its folder."""
 
@@ -83,6 +86,16 @@ threshold = click.option(
 )
 truth = click.option(
     "--truth", type=PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against."
+)
+opening = click.option(
+    "--opening",
+    multiple=True,
+    type=click.IntRange(1),
+    metavar="N",
+    help="Close opening N of the list of `cranio-nb inspect`, doubtful or natural ones too; may be repeated.",
+)
+head = click.option(
+    "--head", type=click.Choice(HEADS), default="face", show_default=True, help="simple: a dome without a face."
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 
@@ -155,6 +168,27 @@ def parse_planes(text: str | None) -> tuple[int, int] | None:
     except ValueError:
         raise click.BadParameter("two plane numbers A:B are wanted.", param_hint="--planes") from None
     return first, last
+
+
+@contextmanager
+def opening_checked() -> Iterator[None]:
+    """Make a number that no opening has a fault of the option --opening.
+
+    Returns
+    -------
+    context manager
+
+    Raises
+    ------
+    click.BadParameter
+        With the list of the openings that there are.
+    """
+    try:
+        yield
+    except InputRefused as error:
+        if error.code != "NoSuchOpening":
+            raise
+        raise click.BadParameter(str(error), param_hint="--opening") from None
 
 
 def check_reads(**reads: Path | None) -> None:

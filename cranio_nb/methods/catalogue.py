@@ -1,8 +1,8 @@
 """The methods that can be asked for by name: the built-in ones, those of other packages, and those added by hand.
 
 A method is a function ``pieces(bone, openings, *, <options>) -> Iterator[Piece]`` that yields one `Piece` for each
-opening, in their order. Its options are its keyword-only parameters, each with a default. Nothing is loaded before a
-method is used.
+opening, in their order. Its options are its keyword-only parameters, each with a default and, as its annotation, an
+`Option`: what it means, its range and its unit. Nothing is loaded before a method is used.
 
 Another package offers a method by an entry point in its ``pyproject.toml`` that names a module with the function
 ``pieces`` and, where it has presets, the dict ``PRESETS``::
@@ -21,6 +21,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from ..errors import InputRefused
+from ..option import Option, declared
 from ..volume import Volume
 from .piece import Piece
 
@@ -37,7 +38,7 @@ METHODS = {
 GROUP = "cranio_nb.methods"
 """Group of the entry points by which other packages offer methods."""
 
-COMMON = {"smooth": True}
+COMMON = {"smooth": Option("A surface without stairs.", default=True)}
 """Options that `design` itself gives every method: `smooth` for a surface without stairs."""
 
 Pieces = Callable[..., Iterator[Piece]]
@@ -56,14 +57,18 @@ class Method:
     presets : dict
         Name -> options, or a function of the bone that returns them. The preset "default" is not among them: it is
         the defaults of the options.
+    options : dict
+        Name -> what is declared of it; without those that every method has.
     """
 
     name: str
     pieces: Pieces
     presets: Mapping[str, Preset]
+    options: Mapping[str, Option]
 
 
 _added: dict[str, Method] = {}  # by `add_method`, in this process
+_NAME = 40  # letters of an unknown name that are shown
 
 
 def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str, Preset] | None = None) -> Any:
@@ -75,7 +80,7 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
         A name that no other method has, without spaces and colons.
     pieces : callable, optional
         ``pieces(bone, openings, *, <options>)``, yields a `Piece` for each opening. When not given, a decorator for
-        such a function is returned.
+        such a function is returned. Ranges and units of its options are declared as its annotations (`Option`).
     presets : dict, optional
         Name -> options, or a function of the bone that returns them.
 
@@ -93,11 +98,13 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
     Examples
     --------
     >>> import cranio_nb as cn
+    >>> from typing import Annotated
     >>> from scipy import ndimage
     >>> from cranio_nb.methods.catalogue import default_options, remove_method
     >>> from cranio_nb.methods.piece import Piece
+    >>> from cranio_nb.option import Option
     >>> @cn.add_method("sheet")
-    ... def pieces(bone, openings, *, grow_px=2):
+    ... def pieces(bone, openings, *, grow_px: Annotated[int, Option("How far the sheet grows.", 1, 20, "px")] = 2):
     ...     for opening in openings:
     ...         yield Piece(ndimage.binary_dilation(opening.sheet.voxels, iterations=grow_px))
     >>> default_options("sheet")
@@ -113,6 +120,17 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
         raise InputRefused("MethodNameTaken", f"There is a method named {name!r} already.", remedy)
     _added[name] = made
     return pieces
+
+
+def keep_method(method: Method) -> None:
+    """Take a method as another process had it into the catalogue; one of that name that is there stays.
+
+    Parameters
+    ----------
+    method : Method
+    """
+    if method.name not in method_names():
+        _added[method.name] = method
 
 
 def remove_method(name: str) -> None:
@@ -243,12 +261,32 @@ def default_options(name: str) -> dict[str, Any]:
     -------
     dict
     """
-    parameters = inspect.signature(find_method(name).pieces).parameters.values()
-    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY} | COMMON
+    return {option: what.default for option, what in options_of(name).items()}
 
 
-def check_options(name: str, options: dict[str, Any]) -> None:
-    """Refuse options that a method does not have, or whose values are of another kind than its defaults.
+def options_of(name: str) -> dict[str, Option]:
+    """Every option of a method: what it means, its range, its unit and its default.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+
+    Returns
+    -------
+    dict of str to Option
+
+    Examples
+    --------
+    >>> from cranio_nb.methods.catalogue import options_of
+    >>> options_of("slicewise")["skip_mm"].limits
+    '0 to 20 mm'
+    """
+    return {**find_method(name).options, **COMMON}
+
+
+def check_options(name: str, options: Mapping[str, Any]) -> None:
+    """Refuse options that a method does not have, or values of another kind or beyond what is declared.
 
     Parameters
     ----------
@@ -261,33 +299,27 @@ def check_options(name: str, options: dict[str, Any]) -> None:
     InputRefused
         ``UnknownOption`` or ``BadOption``.
     """
-    known = default_options(name)
+    known = options_of(name)
     for option, value in options.items():
         if option not in known:
             remedy = f"It has: {', '.join(known)}."
-            raise InputRefused("UnknownOption", f"The method {name} has no option {option!r}.", remedy)
-        if not _same_kind(value, known[option]):
-            raise InputRefused(
-                "BadOption",
-                f"The option {option!r} of {name} was given as {type(value).__name__}.",
-                f"Its default is {known[option]!r}; give a value of that kind.",
-            )
-
-
-def _same_kind(value: Any, default: Any) -> bool:
-    """Whether a value may replace the default; None is the default of a number that follows from the data."""
-    if isinstance(default, bool | str):
-        return type(value) is type(default)
-    if isinstance(value, bool):
-        return False
-    if isinstance(default, int):
-        return isinstance(value, int)
-    return isinstance(value, int | float) or (default is None and value is None)
+            raise InputRefused("UnknownOption", f"The method {name} has no option {option[:_NAME]!r}.", remedy)
+        known[option].check(f"The option {option} of {name}", value)
 
 
 def _offered() -> dict[str, EntryPoint]:
     """The methods that other installed packages offer."""
     return {point.name: point for point in entry_points(group=GROUP)}
+
+
+def _undeclared(pieces: Pieces) -> str:
+    """What is wrong with the declarations of a method's options; empty where nothing is."""
+    try:
+        options = declared(pieces)
+    except NameError as error:
+        return f"{error}; import what its annotations name at the top of its module"
+    off = [option for option, what in options.items() if what.limits and not what.allows(what.default)]
+    return f"a default of {', '.join(off)} that is not allowed" if off else ""
 
 
 def _place(function: Pieces) -> tuple[str, str]:
@@ -307,11 +339,13 @@ def _checked(name: Any, pieces: Any, presets: Any) -> Method:
         problem = "does not take bone and openings as its first two parameters"
     elif loose:
         problem = f"has parameters that are no keyword-only options with a default: {', '.join(loose)}"
+    elif wrong := _undeclared(pieces):
+        problem = f"declares what cannot be: {wrong}"
     elif COMMON.keys() & {p.name for p in parameters}:
         problem = f"has an option that `design` gives to every method: {', '.join(COMMON)}"
     elif not isinstance(presets, Mapping) or "default" in presets:
         problem = "needs presets as a dict of names other than 'default'"
     else:
-        return Method(name, pieces, presets)
+        return Method(name, pieces, presets, declared(pieces))
     remedy = "Write it as pieces(bone, openings, *, option=default, ...), which yields a Piece for each opening."
     raise InputRefused("BadMethod", f"The method {name!r} {problem}.", remedy)

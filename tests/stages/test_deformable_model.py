@@ -63,6 +63,41 @@ def test_a_step_is_the_clamped_semi_implicit_scheme(seed):
     np.testing.assert_allclose(step.curve, dense_step(c, slopes, k, w1, w2, dt), atol=1e-9)
 
 
+def held_spiral(n, w1, w2, turn):
+    """A solution of eq. (1) at rest in closed form: snaxels (n, 2), end slopes, pressure, tension, rigidity.
+
+    The logarithmic spiral c(s) = exp(z s), 0 <= s <= 1, as a complex number, with z = -a + i turn: its own force is
+    -w1 c'' + w2 c'''' = (-w1 z + w2 z^3) c'. It stands on the curve, a real multiple of i c', where the real part of
+    the bracket is none: a^2 = 3 turn^2 + w1 / w2. The other part, times |c'|, is the pressure that holds the spiral;
+    like the curvature it grows all along, here e^|a| > 5 fold. Per snaxel, with h = 1 / (n - 1): pressure h^2 k,
+    tension w1, rigidity w2 / h^2.
+    """
+    h = 1 / (n - 1)
+    z = complex(-np.sqrt(3 * turn**2 + w1 / w2), turn)
+    c = np.exp(z * np.linspace(0, 1, n))
+    own = -w1 * z + w2 * z**3
+    assert own.real == pytest.approx(0, abs=1e-12 * abs(own))
+    pairs = [np.stack([part.real, part.imag], axis=1) for part in (c, h * z * c[[0, -1]])]
+    return *pairs, h**2 * own.imag * np.abs(z * c), w1, w2 / h**2
+
+
+@pytest.mark.parametrize("turn", [-1.0, 1.5])
+@pytest.mark.parametrize(("w1", "w2"), [(1.0, 1.0), (0.0, 1.0), (3.0, 0.5)])
+def test_a_manufactured_rest_is_approached_in_second_order(w1, w2, turn):
+    """From a straight start, with 3 times 2 refinements; central differences and ghost nodes are of second order."""
+    errors = []
+    for n in (21, 41, 81, 161):
+        wanted, slopes, k, tension, rigidity = held_spiral(n, w1, w2, turn)
+        start = np.linspace(wanted[0], wanted[-1], n)
+        made = inflate(start, slopes, pressure=k, tension=tension, rigidity=rigidity, dt=n**2, tol=1e-11)
+        assert made.converged
+        again = dense_step(made.curve, slopes, k, tension, rigidity, 1.0)
+        np.testing.assert_allclose(again, made.curve, atol=1e-9)  # the textbook's scheme rests there too
+        errors.append(np.linalg.norm(made.curve - wanted, axis=1).max())
+    orders = np.log2(np.divide(errors[:-1], errors[1:]))
+    np.testing.assert_allclose(orders, 2, atol=0.05)
+
+
 @pytest.mark.parametrize("length", [FAR, 5 * FAR])
 @pytest.mark.parametrize("n", [21, 41, 81])
 def test_with_matching_slopes_the_equilibrium_is_a_parabola_whatever_the_chord(length, n):

@@ -1,6 +1,6 @@
 """DICOM file -> its data set up to the pixels, and where the pixels lie. Nothing is decoded.
 
-The file is not trusted: sides and frames are capped here, before anything is allocated for them (`inflated` caps
+The file is not trusted: elements, sides and frames are capped here, before anything is allocated for them (`inflated` caps
 the bytes of a deflated file).
 """
 
@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import struct
 from dataclasses import dataclass, replace
+from itertools import count
 from pathlib import Path
 from typing import BinaryIO
 
@@ -23,6 +24,7 @@ from .inflated import Inflated, open_dataset
 
 MAX_SIDE = 4096  # rows, columns
 MAX_SLICES = 4000
+_MAX_ELEMENTS = 50_000  # before the pixels; the standard knows some 5,000
 _MAX_ITEMS, _MAX_ITEMS_PER_FRAME = 256, 16  # of encapsulated pixel data: so many, and so many more for each frame
 UNDEFINED_LENGTH = 0xFFFFFFFF
 # CT images, classic and multi-frame; some writers leave the class out
@@ -141,8 +143,12 @@ def _parse_stream(stream: BinaryIO, path: Path, file: int) -> tuple[Dataset, Pix
     meta, data = open_dataset(stream, file)
     syntax = str(meta.get("TransferSyntaxUID") or ImplicitVRLittleEndian)
     places: list[PixelPlace] = []
+    elements = count()
 
     def at_pixels(tag: int, vr: str | None, length: int) -> bool:
+        # 256 MB of inflated zeros would be 32 million empty elements, which take a minute
+        if next(elements) >= _MAX_ELEMENTS:
+            raise over_limit(file, "elements", f"more than {_MAX_ELEMENTS}", _MAX_ELEMENTS)
         if tag in _PIXELS:
             places.append(PixelPlace(path, file, syntax, data.tell(), length, tag in _FLOAT_PIXELS))
         return tag in _PIXELS

@@ -5,15 +5,18 @@ import zlib
 from pathlib import Path
 
 import pydicom
+import pytest
 from dicom_series import head, refusal, save, series
 
 from cranio_nb.readers.dicom.inflated import Inflated
 
 
-def test_deflate_bomb_is_refused(tmp_path: Path) -> None:
+@pytest.mark.parametrize("element", [b"", b"\x09\x00\x10\x10OB\0\0\0\0\0\x10"], ids=["elements", "bytes"])
+def test_deflate_bomb_is_refused(element: bytes, tmp_path: Path) -> None:
+    """320 MB of zeros: each 8 of them are an empty element, or all belong to one that declares 256 MB."""
     bomb = zlib.compressobj(9, zlib.DEFLATED, -zlib.MAX_WBITS)
     zeros = bytes(2**24)
-    packed = b"".join(bomb.compress(zeros) for _ in range(20)) + bomb.flush()
+    packed = bomb.compress(element) + b"".join(bomb.compress(zeros) for _ in range(20)) + bomb.flush()
     folder = save(tmp_path / "scan", series(head())[:1], syntax="1.2.840.10008.1.2.1.99")
     path = folder / "image0000.dcm"
     with open(path, "rb") as stream:
@@ -21,7 +24,9 @@ def test_deflate_bomb_is_refused(tmp_path: Path) -> None:
         size = 144 + meta.FileMetaInformationGroupLength
         start = stream.read(size)
     path.write_bytes(start + packed)
-    assert refusal(folder).code == "LimitExceeded"
+    error = refusal(folder)
+    assert error.code == "LimitExceeded"
+    assert ("bytes" if element else "elements") in str(error)
 
 
 def test_a_packed_stream_that_ends_early_ends_the_reading() -> None:
