@@ -221,4 +221,4 @@ def _shown(value: Any) -> str:
     return f"{value:g}" if isinstance(value, float) else _KINDS.get(type(value), type(value).__name__)
 
 
-_KINDS = {str: "text", list: "a list", dict: "an object"}
+_KINDS: dict[type, str] = {str: "text", list: "a list", dict: "an object"}
