@@ -66,6 +66,8 @@ def load_prior(path: Path) -> Prior:
             _check_bytes(held)
             version = int(_read_array(held, "version"))
             arrays = {name: _read_array(held, name) for name in ("inside", "outside", "radii")}
+    except InputRefused:
+        raise
     except OSError as error:
         raise InputRefused("NoPrior", "The prior cannot be opened; is the path right?", _REMEDY) from error
     except (ValueError, KeyError, TypeError, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:

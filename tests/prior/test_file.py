@@ -90,6 +90,7 @@ def test_what_would_inflate_is_refused_before_it_does(bomb, learned, zeros, tmp_
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert refused.value.code == "NoPrior" and peak < 60e6
+    assert ("at most 268 MB" in str(refused.value)) == (bomb in ("one member", "many members"))
 
 
 def _members(path):
