@@ -25,6 +25,7 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..pipeline.compare import Comparison, Measure
+    from ..pipeline.trial import Contender
 
 
 @click.command()
@@ -69,13 +70,9 @@ def compare(
     from ..output.staging import staged
     from ..pipeline.compare import compare as run_all
     from ..pipeline.preparation import prepare
-    from ..pipeline.trial import contenders
     from .console import progress_bar
 
-    try:
-        asked = contenders(methods)
-    except InputRefused as error:
-        raise click.BadParameter(str(error), param_hint="--method") from None
+    asked = _asked(methods)
     check_reads(scan=scan, truth=truth)
     if out is not None:
         check_writes(out, FILES, {"scan": scan, "truth": truth})
@@ -98,6 +95,16 @@ def compare(
     _print(found, out)
     if not found.made:
         raise click.exceptions.Exit(NoOpening.exit_code)
+
+
+def _asked(methods: tuple[str, ...]) -> tuple[Contender, ...]:
+    """The methods by name, or a sentence about the option that names them."""
+    from ..pipeline.trial import contenders
+
+    try:
+        return contenders(methods)
+    except InputRefused as error:
+        raise click.BadParameter(str(error), param_hint="--method") from None
 
 
 def _print(found: Comparison, out: Path | None) -> None:
