@@ -91,8 +91,8 @@ def rational_basis(
         # B = Q W by the product rule, solved for the highest derivative of Q
         for (i, j), times in _SHARES[d].items():
             if (i, j) != VALUE:
-                total = total - times * sparse.diags_array(below[i, j]) @ found[d[0] - i, d[1] - j]
-        found[d] = sparse.csr_array(sparse.diags_array(1 / below[VALUE]) @ total)
+                total = total - scale_rows(found[d[0] - i, d[1] - j], times * below[i, j])
+        found[d] = scale_rows(sparse.csr_array(total), 1 / below[VALUE])
     return found
 
 
@@ -139,7 +139,7 @@ def jacobians(
     found = {}
     for d, part in basis.items():
         # by the control points: the same for x, y and z
-        by_point = sparse.block_diag([part @ sparse.diags_array(weights)] * 3, format="csr")
+        by_point = sparse.block_diag([scale_columns(part, weights)] * 3, format="csr")
         if free_weights:
             by_weight = sparse.vstack([_by_weight(basis, shape, points, d, axis) for axis in range(3)])
             by_point = sparse.hstack([by_point, by_weight], format="csr")
@@ -151,7 +151,48 @@ def _by_weight(
     basis: Mapping[Pair, sparse.csr_array], shape: Mapping[Pair, NDArray], points: NDArray, d: Pair, axis: int
 ) -> sparse.csr_array:
     """A derivative of ds/dw_i = (p_i - s) Q_i along one axis, by the product rule, shape (k, n m)."""
-    total = basis[d] @ sparse.diags_array(points[:, axis])
+    total = scale_columns(basis[d], points[:, axis])
     for (i, j), times in _SHARES[d].items():
-        total = total - times * sparse.diags_array(shape[i, j][:, axis]) @ basis[d[0] - i, d[1] - j]
+        total = total - scale_rows(basis[d[0] - i, d[1] - j], times * shape[i, j][:, axis])
     return sparse.csr_array(total)
+
+
+def scale_columns(matrix: sparse.csr_array, by: NDArray) -> sparse.csr_array:
+    """A matrix times a diagonal one, without the cost of a product of sparse matrices.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (n, m)
+    by : ndarray, shape (m,)
+
+    Returns
+    -------
+    sparse array, shape (n, m)
+
+    Examples
+    --------
+    >>> scale_columns(sparse.csr_array([[1.0, 2.0], [0.0, 3.0]]), np.array([10.0, 100.0])).toarray().tolist()
+    [[10.0, 200.0], [0.0, 300.0]]
+    """
+    return sparse.csr_array((matrix.data * by[matrix.indices], matrix.indices, matrix.indptr), matrix.shape)
+
+
+def scale_rows(matrix: sparse.csr_array, by: NDArray) -> sparse.csr_array:
+    """A diagonal matrix times another.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (n, m)
+    by : ndarray, shape (n,)
+
+    Returns
+    -------
+    sparse array, shape (n, m)
+
+    Examples
+    --------
+    >>> scale_rows(sparse.csr_array([[1.0, 2.0], [0.0, 3.0]]), np.array([10.0, 100.0])).toarray().tolist()
+    [[10.0, 20.0], [0.0, 300.0]]
+    """
+    each = np.repeat(by, np.diff(matrix.indptr))
+    return sparse.csr_array((matrix.data * each, matrix.indices, matrix.indptr), matrix.shape)

@@ -26,7 +26,7 @@ from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
 from .sheet import STRAINS, VALUE, Material, Sheet, Springs, gauss
-from .sheet_derivatives import Pair, derivatives, jacobians, rational_basis, spline_products
+from .sheet_derivatives import Pair, derivatives, jacobians, rational_basis, scale_rows, spline_products
 
 _LIGHTEST = 0.05  # a weight may not fall below
 _SHORTEST = 1e-6  # part of its time to which a step is shortened before the sheet counts as being at rest
@@ -273,7 +273,7 @@ def _forces(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature
     at_springs = rational_basis(sheet.weights, sums.at_springs)
     pull = jacobians(sheet, at_springs, free_weights=free)[VALUE]
     strength = np.tile(springs.strength, 3)
-    elastic = pull.T @ sparse.diags_array(strength) @ pull
+    elastic = pull.T @ scale_rows(pull, strength)
     force = pull.T @ (strength * (springs.points - sheet.at(springs.v, springs.u)).T.ravel())
     # the sheet itself, against its natural shape
     basis = rational_basis(sheet.weights, sums.splines)
@@ -290,7 +290,7 @@ def _forces(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature
 
 
 def _gram(part: sparse.csr_array, weight: NDArray) -> sparse.csr_array:
-    return sparse.csr_array(part.T @ sparse.diags_array(np.tile(weight, 3)) @ part)
+    return sparse.csr_array(part.T @ scale_rows(part, np.tile(weight, 3)))
 
 
 def _coordinates(sheet: Sheet, free_weights: bool) -> NDArray[np.float64]:
