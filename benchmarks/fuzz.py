@@ -2,7 +2,7 @@
 
 python benchmarks/fuzz.py dicom|nifti|nrrd [--seconds 180] [--corpus FOLDER]
 
-Needs Atheris: pip install -e '.[fuzz]'. An input is one file of the kind; a DICOM folder holds nothing else, so that
+Needs Atheris: pip install atheris. An input is one file of the kind; a DICOM folder holds nothing else, so that
 what is read is refused for its few slices at the latest. `InputRefused` is the answer that is wanted; any other
 exception, a death or 30 s for one file stop the run, and the file is left as `crash-...` in the working folder.
 """

@@ -58,6 +58,7 @@ _HOMES = {
     "read_ct": "readers",
     "segment": "stages.segmentation",
     "find_openings": "vault.opening_search",
+    "survey_openings": "vault.opening_search",
     "design": "methods.design",
     "add_method": "methods.catalogue",
     "Piece": "methods.piece",

@@ -24,6 +24,9 @@ class Opening:
         It shows where the hole is and how far it reaches, not the shape of the missing bone.
     head_centre : ndarray, shape (3,)
         World mm of a point inside the cranial cavity: where rays to the vault start.
+    head_axes : ndarray, shape (3, 3), optional
+        Rows: the head's left, back and up, orthonormal, world, along which rays to the vault are laid; where they are
+        not given, a method that needs them finds them in the bone.
 
     Examples
     --------
@@ -36,6 +39,7 @@ class Opening:
 
     sheet: Volume
     head_centre: NDArray[np.float64]
+    head_axes: NDArray[np.float64] | None = None
 
     @property
     def planes(self) -> tuple[int, int]:

@@ -8,6 +8,7 @@ from .cut import cut_case
 from .defect import DEFECTS, DefectSpec
 from .face import AROUND, Landmarks, Pose, face_case
 from .head import HeadShape
+from .heads import HEADS, head_case
 from .phantom import SIZES, leaning, phantom_case, scan
 from .series import ORIENTATIONS, SYNTAXES, write_dicom
 from .truth import Gap, SliceTruth
@@ -15,6 +16,7 @@ from .truth import Gap, SliceTruth
 __all__ = [
     "AROUND",
     "DEFECTS",
+    "HEADS",
     "ORIENTATIONS",
     "SIZES",
     "SYNTAXES",
@@ -27,6 +29,7 @@ __all__ = [
     "SliceTruth",
     "cut_case",
     "face_case",
+    "head_case",
     "leaning",
     "phantom_case",
     "scan",

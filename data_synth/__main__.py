@@ -20,6 +20,7 @@ from .case import Case
 from .cut import cut_case
 from .defect import DEFECTS
 from .files import read_scan, write_case
+from .heads import HEADS, head_case
 from .phantom import SIZES, phantom_case
 
 
@@ -35,6 +36,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _make(options: argparse.Namespace) -> Case:
+    if options.source is None and options.head == "face":
+        if options.couch or options.metal or options.tilt or options.diameter:
+            raise ValueError("--couch, --metal, --tilt and --diameter are for --head simple.")
+        return head_case("face", options.size, options.defect, options.seed)
     if options.source is None:
         return phantom_case(
             options.size,
@@ -56,6 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--defect", choices=DEFECTS, default="unilateral")
     parser.add_argument("--seed", type=int, default=0, help="chooses head, place, size and rim")
     parser.add_argument("--diameter", type=float, metavar="MM", help="mean diameter of every hole")
+    parser.add_argument("--head", choices=HEADS, default="simple", help="face: skull base, face and neck as well")
     parser.add_argument("--size", choices=SIZES, default="tiny", help="grid of the phantom")
     parser.add_argument("--couch", action="store_true", help="phantom: put a plate behind the head")
     parser.add_argument("--metal", action="store_true", help="phantom: put a metal clip near the hole")

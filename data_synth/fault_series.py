@@ -78,7 +78,7 @@ def write_folder(path: Path, recipe: Recipe) -> tuple[NDArray[np.int16], NDArray
         recipe.edit(slices)
     path.mkdir(parents=True, exist_ok=True)
     for number, ds in enumerate(slices):
-        _save(path / f"image{number:04d}.dcm", ds, recipe.syntax)
+        save_file(path / f"image{number:04d}.dcm", ds, recipe.syntax)
     if recipe.files is not None:
         recipe.files(path)
     iop = np.array(recipe.orientation)
@@ -141,8 +141,17 @@ def store_hu(
     ds.RescaleSlope, ds.RescaleIntercept = slope, intercept
 
 
-def _save(path: Path, ds: Dataset, syntax: str) -> None:
-    """Write one file; whoever edited the pixels says how they are encoded."""
+def save_file(path: Path, ds: Dataset, syntax: str) -> None:
+    """Write one file; whoever edited the pixels says how they are encoded.
+
+    Parameters
+    ----------
+    path : Path
+    ds : Dataset
+        Of one slice.
+    syntax : str
+        UID of its transfer syntax.
+    """
     ds.file_meta.TransferSyntaxUID = uid.UID(syntax)
     ds.file_meta.MediaStorageSOPClassUID = ds.SOPClassUID
     ds.file_meta.MediaStorageSOPInstanceUID = ds.SOPInstanceUID

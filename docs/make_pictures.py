@@ -12,18 +12,19 @@ from cranio_nb.drawing.coarse_skull import skull_surface
 from cranio_nb.mesh import Mesh
 from cranio_nb.methods.slicewise.slices import SlicedDesign
 from cranio_nb.pipeline.run import RunResult, run_design
-from data_synth import phantom_case
+from data_synth import head_case
 from data_synth.files import write_case
 
 OUT = Path(__file__).parent / "img" / "result.png"
 NOTHING = Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp))
 PX = 0.5  # mm
+VIEW = np.array([1.0, -0.35, 0.15])  # from the left and a little from the front
 
 
 def main() -> None:
     """Design what `cranio-nb demo` designs, and draw skull, prosthesis and one slice side by side."""
     with TemporaryDirectory() as folder:
-        write_case(Path(folder), phantom_case("full", "unilateral", 0))
+        write_case(Path(folder), head_case("face", "full", "unilateral", 0))
         result = run_design(Path(folder) / "ct")
     OUT.parent.mkdir(exist_ok=True)
     OUT.write_bytes(figures.png(side_by_side([*views(result), middle_slice(result)])))
@@ -31,9 +32,8 @@ def main() -> None:
 
 def views(result: RunResult) -> list[Figure]:
     """The skull with its opening, and closed."""
-    opening = result.case.openings[0]
-    skull = skull_surface(result.case.bone, float(opening.head_centre[2]) - 10.0)
-    return [figures.view_figure(skull, mesh, opening.direction, px_mm=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
+    skull = skull_surface(result.case.bone)
+    return [figures.view_figure(skull, mesh, VIEW, px_mm=PX) for mesh in (NOTHING, result.prosthesis.mesh)]
 
 
 def middle_slice(result: RunResult) -> Figure:

@@ -9,7 +9,19 @@ import click
 
 from ..errors import InputRefused, NoOpening
 from ..methods.catalogue import METHODS
-from .options import PATH, allow, check_reads, check_writes, debug, label, mask, threshold, truth
+from .options import (
+    PATH,
+    allow,
+    check_reads,
+    check_writes,
+    debug,
+    label,
+    mask,
+    opening,
+    opening_checked,
+    threshold,
+    truth,
+)
 
 if TYPE_CHECKING:
     from ..pipeline.compare import Comparison, Measure
@@ -24,8 +36,9 @@ if TYPE_CHECKING:
     "methods",
     multiple=True,
     metavar="NAME",
-    help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated.  [default: all]",
+    help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated; see `cranio-nb methods`.  [default: all]",
 )
+@opening
 @mask
 @label
 @threshold
@@ -36,6 +49,7 @@ def compare(
     truth: Path | None,
     out: Path | None,
     methods: tuple[str, ...],
+    opening: tuple[int, ...],
     mask: bool,
     label: int | None,
     threshold: float | None,
@@ -65,9 +79,16 @@ def compare(
     check_reads(scan=scan, truth=truth)
     if out is not None:
         check_writes(out, FILES, {"scan": scan, "truth": truth})
-    with progress_bar() as progress:
+    with progress_bar() as progress, opening_checked():
         case = prepare(
-            scan, mask=mask or None, label=label, threshold=threshold, truth=truth, allow=allow, progress=progress
+            scan,
+            mask=mask or None,
+            label=label,
+            threshold=threshold,
+            opening=opening,
+            truth=truth,
+            allow=allow,
+            progress=progress,
         )
         found = run_all(case, asked, progress=lambda name, done: progress(name, 0.4 + 0.5 * done))
         if out is not None:
@@ -83,7 +104,8 @@ def _print(found: Comparison, out: Path | None) -> None:
     """Print the tables, the sentences of those that refused, and where the page is."""
     from ..output.comparison_tables import tables
     from ..pipeline.compare import MEASURES
-    from .console import print_table
+    from ..vault.remarks import opening_remarks
+    from .console import print_findings, print_table
 
     for part in tables(found):
         columns = {key: MEASURES[key] for key in part["keys"]}
@@ -93,6 +115,7 @@ def _print(found: Comparison, out: Path | None) -> None:
         ]
         print_table(part["title"], ("", *(what.short for what in columns.values())), rows)
         click.echo(click.wrap_text("; ".join(filter(None, map(_meaning, columns.values()))), 78, "  ", "  ") + "\n")
+    print_findings(opening_remarks(found.case.closed, found.case.left_open))
     for trial in found.trials:
         if trial.status != "done":
             click.echo(f"{trial.contender.name}: {trial.status}: {trial.message}")

@@ -14,11 +14,11 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from ..output.files import json_text
-from ..readers import LoadReport
+from ..readers import Finding, LoadReport
 
 if TYPE_CHECKING:
-    from ..evaluation.opening_size import OpeningSize
     from ..pipeline.run import RunResult
+    from ..vault.opening_choice import JudgedOpening
 
 _PIPED_WIDTH = 110  # columns of a table that no terminal shows
 
@@ -103,25 +103,39 @@ def print_load(load: LoadReport) -> None:
         print_table("Chosen, skipped and corrected", ("Kind", "Name", "What was seen"), found)
 
 
-def print_openings(openings: Sequence[OpeningSize]) -> None:
+def print_openings(openings: Sequence[JudgedOpening]) -> None:
     """Print openings as a table; nothing where there are none.
 
     Parameters
     ----------
-    openings : sequence of OpeningSize
+    openings : sequence of JudgedOpening
     """
     rows = [
         (
-            str(i),
-            f"{o.planes[0]}:{o.planes[1]}",
-            f"{o.length:.0f} x {o.width:.0f}",
-            o.place,
-            ", ".join(f"{c:.1f}" for c in o.centre),
+            str(one.number),
+            f"{one.verdict.kind} ({one.verdict.confidence:.2f})",
+            f"{one.size.planes[0]}:{one.size.planes[1]}",
+            f"{one.size.length:.0f} x {one.size.width:.0f}",
+            one.size.place,
+            ", ".join(f"{c:.1f}" for c in one.size.centre),
+            one.verdict.reason + ("" if one.whole else " It reaches the edge of the image."),
         )
-        for i, o in enumerate(openings, 1)
+        for one in openings
     ]
     if rows:
-        print_table("Openings of the vault", ("", "Planes", "Size (mm)", "Place", "Centre, LPS (mm)"), rows)
+        head = ("", "Verdict", "Planes", "Size (mm)", "Place", "Centre, LPS (mm)", "Reason")
+        print_table("Openings of the skull, and the confidence in each verdict", head, rows)
+
+
+def print_findings(findings: Sequence[Finding]) -> None:
+    """Print findings, a line each.
+
+    Parameters
+    ----------
+    findings : sequence of Finding
+    """
+    for finding in findings:
+        click.echo(f"{finding.severity}: {finding.message}")
 
 
 def print_result(result: RunResult, out: Path) -> None:
@@ -133,12 +147,13 @@ def print_result(result: RunResult, out: Path) -> None:
     out : Path
         Folder of the report.
     """
-    for o in result.sizes:
-        click.echo(f"opening: {o.place}, {o.length:.0f} x {o.width:.0f} mm, planes {o.planes[0]}:{o.planes[1]}")
+    for one in result.case.closed:
+        click.echo(f"closed: {one}")
     click.echo(f"volume: {result.mesh.volume / 1000:.2f} cm3")
     if result.truth:
         s = result.truth.score
         click.echo(f"truth: Dice {s.dice:.3f}, border Dice {s.border_dice:.3f}, HD95 {s.hd95:.2f} mm")
-    for finding in result.findings:
-        click.echo(f"{finding.severity}: {finding.message}")
+    # what the scan itself warns of is said at the door, and not in the report only
+    print_findings([finding for finding in result.case.load.findings if finding.severity == "warning"])
+    print_findings(result.findings)
     click.echo(f"report: {out / 'report.html'}")

@@ -6,14 +6,15 @@ from pathlib import Path
 
 import click
 
-from .options import CASE, PATH, SIZES, check_writes, debug
+from .options import CASE, PATH, SIZES, check_writes, debug, head
 
 
 @click.command()
 @click.option("--out", type=PATH, default=Path("cranio_nb_out/demo"), show_default=True, help="Folder to write to.")
 @click.option("--size", type=click.Choice(SIZES), default="full", show_default=True, help="Grid of the synthetic CT.")
+@head
 @debug
-def demo(out: Path, size: str) -> None:
+def demo(out: Path, size: str, head: str) -> None:
     """Design and score a prosthesis for a synthetic head CT.
 
     The CT is written as a DICOM series into OUT/ct and read back like any other scan. "full" is the size of the
@@ -24,7 +25,7 @@ def demo(out: Path, size: str) -> None:
       cranio-nb demo
       cranio-nb demo --size tiny --out demo_tiny
     """
-    from data_synth import phantom_case
+    from data_synth import head_case
     from data_synth.files import write_case
 
     from ..output import comparison_folder
@@ -37,7 +38,7 @@ def demo(out: Path, size: str) -> None:
     check_writes(out, names, {}, results=comparison_folder.FILES, n_bytes=128_000_000 if size == "full" else 32_000_000)
     with progress_bar() as progress, staged(out, names) as part:
         progress("synthetic CT", 0.0)
-        write_case(part, phantom_case(size, "unilateral", 0))
+        write_case(part, head_case(head, size, "unilateral", 0))
         result = run_design(part / "ct", truth=part / "truth.nii.gz", progress=progress)
         write_outputs(result, part, progress)
     print_result(result, out)

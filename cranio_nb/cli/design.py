@@ -7,7 +7,20 @@ from pathlib import Path
 import click
 
 from .method_name import MethodName, check_asked
-from .options import PATH, allow, check_writes, debug, label, mask, parse_planes, read_params, threshold, truth
+from .options import (
+    PATH,
+    allow,
+    check_writes,
+    debug,
+    label,
+    mask,
+    opening,
+    opening_checked,
+    parse_planes,
+    read_params,
+    threshold,
+    truth,
+)
 
 
 @click.command()
@@ -15,8 +28,14 @@ from .options import PATH, allow, check_writes, debug, label, mask, parse_planes
 @click.option("--out", type=PATH, required=True, help="Folder to write to; made if missing.")
 @click.option("--method", type=MethodName(), default="slicewise", show_default=True)
 @click.option("--preset", default="default", show_default=True, metavar="NAME", help="paper: as published in 2011.")
-@click.option("--params", type=PATH, metavar="JSON", help="File with options of the method: {name: value, ...}.")
+@click.option(
+    "--params",
+    type=PATH,
+    metavar="JSON",
+    help="File with options of the method, {name: value, ...}; see `cranio-nb methods`.",
+)
 @click.option("--prior", type=PATH, metavar="NPZ", help="What `cranio-nb prior learn` made; for thin-plate.")
+@opening
 @click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
 @truth
 @mask
@@ -31,6 +50,7 @@ def design(
     preset: str,
     params: Path | None,
     prior: Path | None,
+    opening: tuple[int, ...],
     planes: str | None,
     truth: Path | None,
     mask: bool,
@@ -47,7 +67,9 @@ def design(
     Examples:
       cranio-nb design scans/head_ct --out out
       cranio-nb design skull.nii.gz --mask --preset paper --out out
+      cranio-nb design scans/head_ct --opening 2 --out out
       cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
+      cranio-nb design scans/head_ct --params options.json --out out
     """
     from ..output.design_folder import FILES, write_outputs
     from ..output.staging import staged
@@ -61,7 +83,7 @@ def design(
     learned = options.get("prior")
     reads = {"scan": scan, "truth": truth, "params": params, "prior": Path(learned) if learned else None}
     check_writes(out, FILES, reads)
-    with progress_bar() as progress:
+    with progress_bar() as progress, opening_checked():
         result = run_design(
             scan,
             method=method,
@@ -70,6 +92,7 @@ def design(
             mask=mask or None,
             label=label,
             threshold=threshold,
+            opening=opening,
             planes=between,
             truth=truth,
             allow=allow,

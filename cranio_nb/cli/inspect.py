@@ -13,7 +13,7 @@ from ..readers import read_ct
 from .options import PATH, allow, as_json, check_reads, debug, label, mask, threshold
 
 if TYPE_CHECKING:
-    from ..evaluation.opening_size import OpeningSize
+    from ..vault.opening_choice import JudgedOpening
 
 
 @click.command()
@@ -29,17 +29,18 @@ def inspect(
 ) -> None:
     """Show how a scan is read and which openings its skull has.
 
+    Each opening has a number, by which `--opening` of design and compare chooses it, and a verdict: cut ones are
+    closed; doubtful and natural ones are left open unless they are chosen.
+
     \b
     Examples:
       cranio-nb inspect scans/head_ct
       cranio-nb inspect skull.nrrd --mask --json
     """
-    from ..evaluation.opening_size import measure_opening
     from ..output.design_folder import load_record
-    from ..stages.segmentation import bone_of
-    from ..vault.head_frame import find_head_frame
-    from ..vault.opening_search import find_openings
-    from ..vault.remarks import remarks
+    from ..pipeline.survey import survey_scan
+    from ..vault.opening_choice import choose_openings
+    from ..vault.remarks import orientation_remarks, thickness_remarks
     from .console import print_json, print_load, print_openings, progress_bar
 
     check_reads(scan=scan)
@@ -49,18 +50,22 @@ def inspect(
         )
     # what was read is printed also where the skull is refused; the refusal ends the command
     problem: CranioError | None = None
-    sizes: list[OpeningSize] = []
+    found: tuple[JudgedOpening, ...] = ()
+    closed: tuple[JudgedOpening, ...] = ()
+    load = replace(load, findings=(*load.findings, *thickness_remarks(load.spacing[0])))
     try:
-        bone = bone_of(volume, threshold)
-        frame = find_head_frame(bone)
-        load = replace(load, findings=(*load.findings, *remarks(bone, frame)))
-        sizes = [measure_opening(one) for one in find_openings(bone, scan=volume, frame=frame)]
+        seen = survey_scan(volume, threshold)
+        load = replace(load, findings=(*load.findings, *orientation_remarks(seen.frame)))
+        found = seen.found
+        closed = choose_openings(found)
     except CranioError as error:
         problem = error
     if as_json:
-        print_json({"load": load_record(load), "openings": sizes, "problem": problem and problem.code})
+        listed = {"openings": closed, "left_open": [one for one in found if one not in closed]}
+        records = {name: [one.record() for one in some] for name, some in listed.items()}
+        print_json({"load": load_record(load), **records, "problem": problem and problem.code})
     else:
         print_load(load)
-        print_openings(sizes)
+        print_openings(found)
     if problem:
         raise problem

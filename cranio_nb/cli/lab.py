@@ -6,13 +6,17 @@ from pathlib import Path
 
 import click
 
-from .options import PATH, debug
+from ..option import Option
+from .options import PATH, debug, number
+
+PORT = Option("Port to listen on.", 1024, 65535, whole=True)
+"""Lower ones are the system's own."""
 
 
 @click.command()
 @click.argument("folder", required=False, type=PATH)
 @click.option("--no-browser", is_flag=True, help="Print the address instead of opening a browser.")
-@click.option("--port", type=int, help="Port to listen on.  [default: 8888, or the next free one]")
+@number("--port", PORT, "8888, or the next free one")
 @click.option("--allow-root", is_flag=True, help="Open it also as root: notebooks then have all rights.")
 @debug
 def lab(folder: Path | None, no_browser: bool, port: int | None, allow_root: bool) -> None:

@@ -18,6 +18,7 @@ from .doctor import doctor
 from .inspect import inspect
 from .lab import lab
 from .lessons import lessons
+from .methods import methods
 from .options import debug
 from .phantom import phantom
 from .prior import prior
@@ -60,7 +61,7 @@ def _sentence(error: Exception) -> str:
 
 @click.group(
     cls=ErrorGroup,
-    commands=[demo, phantom, design, inspect, score, doctor, compare, lab, lessons, prior],
+    commands=[demo, phantom, design, inspect, score, doctor, compare, methods, lab, lessons, prior],
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.version_option(package_name="cranio-nb", prog_name="cranio-nb")

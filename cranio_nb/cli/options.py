@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import click
 
 from ..errors import CannotWrite, InputRefused
 from ..methods.catalogue import check_options
+from ..option import THRESHOLD, Option
 from ..readers import ALLOWANCES
 
 
@@ -43,27 +45,62 @@ class UserPath(click.Path):
 
 PATH = UserPath(path_type=Path)
 """Of every path on the command line."""
-THRESHOLDS_HU = (50.0, 3000.0)
-"""Between which a threshold of bone makes sense: above soft tissue and below metal."""
 SIZES = ("tiny", "class", "full")
 """Grids of the synthetic head."""
+HEADS = ("face", "simple")
+"""The synthetic heads; `simple` is a dome without a face."""
 CASE = ("ct", "mask.nii.gz", "truth.nii.gz", "truth.json")
 """What a synthetic case leaves in its folder."""
+
+
+LABEL = Option("Take the voxels of this value as bone: the skull in a map of labels.", 1, 2**31 - 1, whole=True)
+"""0 is what is no part; files hold labels of at most 32 bits."""
+PLANE = Option("Number of a plane.", 0, 65535, whole=True, default=0)
+"""DICOM counts rows, columns and frames by 16 bits."""
+_LARGEST = 1_000_000  # bytes of a file of options: far more than all of them take
+
+
+class Number(click.ParamType):
+    """A number of the command line, held to what is declared of it."""
+
+    def __init__(self, option: Option) -> None:
+        self.option, self.name = option, option.unit or "N"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The number, refused with its range where it may not be given."""
+        try:
+            found = int(value) if self.option.kind == "whole number" else float(value)
+            return self.option.check("It", found)
+        except InputRefused as error:
+            self.fail(str(error), param, ctx)
+        except ValueError:  # no number, or one of too many digits
+            self.fail(f"It is no {self.option.kind}. Give {self.option.wanted}.", param, ctx)
+
+
+def number(name: str, option: Option, shown: str = "") -> Callable[[Any], Any]:
+    """The option of a command for a number, its help made from its declaration.
+
+    Parameters
+    ----------
+    name : str
+        With its dashes.
+    option : Option
+    shown : str
+        The default in the help, where it is not a number.
+
+    Returns
+    -------
+    callable
+        Decorator. The command gets None where nothing was given.
+    """
+    default = shown or ("" if option.default is None else f"{option.default:g}")
+    words = f"{option.about} {option.limits}.{f'  [default: {default}]' if default else ''}"
+    return click.option(name, type=Number(option), metavar=option.unit or "N", help=words)
 
 
 def _set_debug(ctx: click.Context, _: click.Parameter, value: bool) -> None:
     """Note that --debug was given, before or after the command's name."""
     ctx.meta["debug"] = ctx.meta.get("debug", False) or value
-
-
-def _check_threshold(_: click.Context, __: click.Parameter, value: float | None) -> float | None:
-    """Refuse a threshold that would take air or soft tissue for bone, or find none."""
-    low, high = THRESHOLDS_HU
-    if value is not None and not low <= value <= high:  # not a number is none of them, either
-        what = "air or soft tissue" if value < low else "no bone"
-        message = f"{value:g} HU would find {what}; bone begins at some 150 to 700 HU. Give {low:g} to {high:g}."
-        raise click.BadParameter(message)
-    return value
 
 
 debug = click.option(
@@ -75,14 +112,20 @@ allow = click.option(
 mask = click.option(
     "--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it."
 )
-label = click.option(
-    "--label", type=int, metavar="N", help="Take the voxels of this value as bone: the skull in a map of labels."
-)
-threshold = click.option(
-    "--threshold", type=float, metavar="HU", callback=_check_threshold, help="Lowest HU of bone.  [default: 400]"
-)
+label = number("--label", LABEL)
+threshold = number("--threshold", THRESHOLD)
 truth = click.option(
     "--truth", type=PATH, metavar="MASK", help="Missing bone on the input's own grid, to score against."
+)
+opening = click.option(
+    "--opening",
+    multiple=True,
+    type=click.IntRange(1),
+    metavar="N",
+    help="Close opening N of the list of `cranio-nb inspect`, doubtful or natural ones too; may be repeated.",
+)
+head = click.option(
+    "--head", type=click.Choice(HEADS), default="face", show_default=True, help="simple: a dome without a face."
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
 
@@ -116,11 +159,13 @@ def read_params(method: str, path: Path | None) -> dict[str, Any]:
     if path is None:
         return {}
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        with path.open("rb") as file:
+            text = file.read(_LARGEST + 1)
+        found = json.loads(text) if len(text) <= _LARGEST else None
         if not isinstance(found, dict):
             raise ValueError
         check_options(method, found)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         why = str(error) if isinstance(error, InputRefused) else "it is not a readable JSON file of {name: value, ...}."
         raise click.BadParameter(why, param_hint="--params") from None
     return found
@@ -141,7 +186,7 @@ def parse_planes(text: str | None) -> tuple[int, int] | None:
     Raises
     ------
     click.BadParameter
-        If these are not two whole numbers.
+        If these are not two whole numbers of planes, the lower one first.
 
     Examples
     --------
@@ -154,7 +199,31 @@ def parse_planes(text: str | None) -> tuple[int, int] | None:
         first, last = (int(part) for part in text.split(":"))
     except ValueError:
         raise click.BadParameter("two plane numbers A:B are wanted.", param_hint="--planes") from None
+    if not (PLANE.allows(first) and PLANE.allows(last) and first <= last):
+        words = f"two plane numbers A:B are wanted, each {PLANE.limits}, the lower one first."
+        raise click.BadParameter(words, param_hint="--planes")
     return first, last
+
+
+@contextmanager
+def opening_checked() -> Iterator[None]:
+    """Make a number that no opening has a fault of the option --opening.
+
+    Returns
+    -------
+    context manager
+
+    Raises
+    ------
+    click.BadParameter
+        With the list of the openings that there are.
+    """
+    try:
+        yield
+    except InputRefused as error:
+        if error.code != "NoSuchOpening":
+            raise
+        raise click.BadParameter(str(error), param_hint="--opening") from None
 
 
 def check_reads(**reads: Path | None) -> None:

@@ -35,8 +35,8 @@ def learn(folder: Path, out: Path, threshold: float | None) -> None:
     Example:
       cranio-nb prior learn scans/intact --out prior.npz
     """
-    from ..output.part_folder import part_folder
-    from ..prior.file import save_prior
+    from ..output.staging import replace_file
+    from ..prior.file import pack_prior
     from ..prior.learning import learn_prior
     from ..prior.study import list_scans, measure_learning_curve, read_intact_skulls
     from ..stages.segmentation import BONE_HU
@@ -55,10 +55,7 @@ def learn(folder: Path, out: Path, threshold: float | None) -> None:
         )
         made = learn_prior(bones, progress)
         rows = measure_learning_curve(made, progress=progress) if len(made.radii) > 2 else ()
-        home.mkdir(parents=True, exist_ok=True)
-        with part_folder(home) as part:
-            save_prior(made, part / "files" / "prior.npz")
-            (part / "files" / "prior.npz").replace(out)
+        replace_file(out, pack_prior(made))
     found = [(str(r.n_skulls), f"{r.outer:.2f}", f"{r.inner:.2f}") for r in rows]
     if found:
         print_table("Error in a hole of a skull that was left out", ("Skulls", "Outer (mm)", "Inner (mm)"), found)

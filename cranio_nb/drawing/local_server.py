@@ -2,11 +2,13 @@
 
 A server of trame as it comes answers any page that is open in the same browser, and its key is the same everywhere.
 This one listens on the loopback address, has a random key, and refuses what names another host or comes from another
-origin. The key reaches the scene in the address of its frame, which the kernel alone knows.
+origin. The key reaches the scene in the address of its frame, which the kernel alone knows. What a stranger on this
+machine can make it hold is bounded: sockets, messages that were begun, and the time until the key is shown.
 """
 
 from __future__ import annotations
 
+import asyncio
 import secrets
 from collections.abc import Callable
 from typing import Any
@@ -15,6 +17,13 @@ NAME = "cranio-nb"
 """Of the server; each kernel has one."""
 HOST = "127.0.0.1"
 """Address it listens on."""
+MAX_SOCKETS = 64
+"""Open at one time: each scene in a notebook has one."""
+MAX_MESSAGE = 2**24
+"""Bytes of a message that may be begun; what a scene sends is far smaller."""
+_MAX_BEGUN = 8  # messages of a socket that wait for their rest
+_SECONDS_TO_LOGIN = 20.0
+_TOO_BIG, _NOT_ALLOWED = 1009, 1008  # codes with which a socket is closed
 _LOCAL = ("127.0.0.1", "localhost")
 _SOCKET = "/ws"
 _FRAMES = " ".join(f"{scheme}://{host}:*" for host in _LOCAL for scheme in ("http", "https"))
@@ -48,7 +57,7 @@ def running_server() -> Any:
 
 
 def guard(bound: Any) -> None:
-    """Check every request to a server, and mark every answer.
+    """Check every request to a server, mark every answer, and bound what its sockets may take.
 
     Parameters
     ----------
@@ -57,6 +66,8 @@ def guard(bound: Any) -> None:
     """
     bound.app.middlewares.append(_checked())
     bound.app.on_response_prepare.append(_mark)
+    for sockets in bound._ws_handlers:
+        _bound_messages(sockets)
 
 
 def is_local_request(hosts: list[str], origins: list[str], port: int, *, socket: bool) -> bool:
@@ -93,15 +104,58 @@ def _checked() -> Callable[..., Any]:
     """What refuses a request that is not local, before anything else sees it."""
     from aiohttp import web
 
+    sockets: set[int] = set()
+
     @web.middleware
     async def check(request: web.Request, handler: Callable[..., Any]) -> web.StreamResponse:
         hosts, origins = request.headers.getall("Host", []), request.headers.getall("Origin", [])
         port = request.transport.get_extra_info("sockname")[1] if request.transport else 0
-        if not is_local_request(hosts, origins, port, socket=request.path == _SOCKET):
+        is_socket = request.path == _SOCKET
+        if not is_local_request(hosts, origins, port, socket=is_socket):
             return web.Response(status=403, text="This scene answers to the notebook that it belongs to.")
-        return await handler(request)
+        if not is_socket:
+            return await handler(request)
+        if len(sockets) >= MAX_SOCKETS:
+            return web.Response(status=503, text="Too many scenes are open; close some.")
+        sockets.add(id(request))
+        try:
+            return await handler(request)  # until the socket is closed
+        finally:
+            sockets.discard(id(request))
 
     return check
+
+
+def _bound_messages(sockets: Any) -> None:
+    """Close a socket that sends text or too large a message, begins too many, or does not show the key in time."""
+    connect, take = sockets.onConnect, sockets.onMessage
+
+    async def close(client: str, code: int) -> None:
+        if client in sockets.connections:
+            await sockets.connections[client].close(code=code)
+
+    async def close_strangers(client: str) -> None:
+        await asyncio.sleep(_SECONDS_TO_LOGIN)
+        if client not in sockets.authentified_client_ids:
+            await close(client, _NOT_ALLOWED)
+
+    async def on_connect(request: Any, client: str) -> None:
+        watch = asyncio.ensure_future(close_strangers(client))
+        watches.add(watch)  # a task that nobody holds may be dropped
+        watch.add_done_callback(watches.discard)
+        await connect(request, client)
+
+    async def on_message(is_binary: bool, message: Any, client: str) -> None:
+        # a part of a message begins with its number, the part's place, and the size of the whole
+        size = int.from_bytes(message.data[8:12], "little") if is_binary else 0
+        begun = len(sockets.unchunkers[client].pending_messages)
+        if not is_binary or size > MAX_MESSAGE or begun > _MAX_BEGUN:
+            await close(client, _TOO_BIG if is_binary else _NOT_ALLOWED)
+            return
+        await take(is_binary, message, client)
+
+    watches: set[asyncio.Future[None]] = set()
+    sockets.onConnect, sockets.onMessage = on_connect, on_message
 
 
 async def _mark(_: Any, response: Any) -> None:

@@ -1,8 +1,8 @@
 """The methods that can be asked for by name: the built-in ones, those of other packages, and those added by hand.
 
 A method is a function ``pieces(bone, openings, *, <options>) -> Iterator[Piece]`` that yields one `Piece` for each
-opening, in their order. Its options are its keyword-only parameters, each with a default. Nothing is loaded before a
-method is used.
+opening, in their order. Its options are its keyword-only parameters, each with a default and, as its annotation, an
+`Option`: what it means, its range and its unit. Nothing is loaded before a method is used.
 
 Another package offers a method by an entry point in its ``pyproject.toml`` that names a module with the function
 ``pieces`` and, where it has presets, the dict ``PRESETS``::
@@ -15,12 +15,13 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from importlib import import_module
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from ..errors import InputRefused
+from ..option import Option, declared
 from ..volume import Volume
 from .piece import Piece
 
@@ -37,7 +38,7 @@ METHODS = {
 GROUP = "cranio_nb.methods"
 """Group of the entry points by which other packages offer methods."""
 
-COMMON = {"smooth": True}
+COMMON = {"smooth": Option("A surface without stairs.", default=True)}
 """Options that `design` itself gives every method: `smooth` for a surface without stairs."""
 
 Pieces = Callable[..., Iterator[Piece]]
@@ -56,14 +57,18 @@ class Method:
     presets : dict
         Name -> options, or a function of the bone that returns them. The preset "default" is not among them: it is
         the defaults of the options.
+    options : dict
+        Name -> what is declared of it, as far as it was read off already (`options_of`).
     """
 
     name: str
     pieces: Pieces
     presets: Mapping[str, Preset]
+    options: Mapping[str, Option] = field(default_factory=dict)
 
 
 _added: dict[str, Method] = {}  # by `add_method`, in this process
+_NAME = 40  # letters of an unknown name that are shown
 
 
 def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str, Preset] | None = None) -> Any:
@@ -75,7 +80,7 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
         A name that no other method has, without spaces and colons.
     pieces : callable, optional
         ``pieces(bone, openings, *, <options>)``, yields a `Piece` for each opening. When not given, a decorator for
-        such a function is returned.
+        such a function is returned. Ranges and units of its options are declared as its annotations (`Option`).
     presets : dict, optional
         Name -> options, or a function of the bone that returns them.
 
@@ -93,11 +98,13 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
     Examples
     --------
     >>> import cranio_nb as cn
+    >>> from typing import Annotated
     >>> from scipy import ndimage
     >>> from cranio_nb.methods.catalogue import default_options, remove_method
     >>> from cranio_nb.methods.piece import Piece
+    >>> from cranio_nb.option import Option
     >>> @cn.add_method("sheet")
-    ... def pieces(bone, openings, *, grow_px=2):
+    ... def pieces(bone, openings, *, grow_px: Annotated[int, Option("How far the sheet grows.", 1, 20, "px")] = 2):
     ...     for opening in openings:
     ...         yield Piece(ndimage.binary_dilation(opening.sheet.voxels, iterations=grow_px))
     >>> default_options("sheet")
@@ -107,12 +114,27 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
     if pieces is None:
         return lambda function: add_method(name, function, presets=presets)
     made = _checked(name, pieces, presets or {})
+    options = declared(pieces)
+    if off := [option for option, what in options.items() if what.limits and not what.allows(what.default)]:
+        message = f"The method {name!r} has a default of {', '.join(off)} beyond its own range."
+        raise InputRefused("BadMethod", message, "Declare a range that holds it.")
     before = _added.get(name)
     if (before is None and name in method_names()) or (before and _place(before.pieces) != _place(pieces)):
         remedy = f"Choose a name other than {', '.join(method_names())}."
         raise InputRefused("MethodNameTaken", f"There is a method named {name!r} already.", remedy)
-    _added[name] = made
+    _added[name] = replace(made, options=options)
     return pieces
+
+
+def keep_method(method: Method) -> None:
+    """Take a method as another process had it into the catalogue; one of that name that is there stays.
+
+    Parameters
+    ----------
+    method : Method
+    """
+    if method.name not in method_names():
+        _added[method.name] = method
 
 
 def remove_method(name: str) -> None:
@@ -243,12 +265,33 @@ def default_options(name: str) -> dict[str, Any]:
     -------
     dict
     """
-    parameters = inspect.signature(find_method(name).pieces).parameters.values()
-    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY} | COMMON
+    return {option: what.default for option, what in options_of(name).items()}
 
 
-def check_options(name: str, options: dict[str, Any]) -> None:
-    """Refuse options that a method does not have, or whose values are of another kind than its defaults.
+def options_of(name: str) -> dict[str, Option]:
+    """Every option of a method: what it means, its range, its unit and its default.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+
+    Returns
+    -------
+    dict of str to Option
+
+    Examples
+    --------
+    >>> from cranio_nb.methods.catalogue import options_of
+    >>> options_of("slicewise")["skip_mm"].limits
+    '0 to 20 mm'
+    """
+    found = find_method(name)
+    return {**(found.options or declared(found.pieces)), **COMMON}
+
+
+def check_options(name: str, options: Mapping[str, Any]) -> None:
+    """Refuse options that a method does not have, or values of another kind or beyond what is declared.
 
     Parameters
     ----------
@@ -261,28 +304,12 @@ def check_options(name: str, options: dict[str, Any]) -> None:
     InputRefused
         ``UnknownOption`` or ``BadOption``.
     """
-    known = default_options(name)
+    known = options_of(name)
     for option, value in options.items():
         if option not in known:
             remedy = f"It has: {', '.join(known)}."
-            raise InputRefused("UnknownOption", f"The method {name} has no option {option!r}.", remedy)
-        if not _same_kind(value, known[option]):
-            raise InputRefused(
-                "BadOption",
-                f"The option {option!r} of {name} was given as {type(value).__name__}.",
-                f"Its default is {known[option]!r}; give a value of that kind.",
-            )
-
-
-def _same_kind(value: Any, default: Any) -> bool:
-    """Whether a value may replace the default; None is the default of a number that follows from the data."""
-    if isinstance(default, bool | str):
-        return type(value) is type(default)
-    if isinstance(value, bool):
-        return False
-    if isinstance(default, int):
-        return isinstance(value, int)
-    return isinstance(value, int | float) or (default is None and value is None)
+            raise InputRefused("UnknownOption", f"The method {name} has no option {option[:_NAME]!r}.", remedy)
+        known[option].check(f"The option {option} of {name}", value)
 
 
 def _offered() -> dict[str, EntryPoint]:

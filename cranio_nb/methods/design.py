@@ -18,7 +18,7 @@ from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import surface_reconstruction
 from ..vault.opening_search import find_openings
-from ..volume import Volume
+from ..volume import Volume, same_grid
 from .catalogue import COMMON, check_options, check_preset, default_options, find_method, preset_options
 from .piece import Piece
 
@@ -30,6 +30,7 @@ def design(
     bone: Volume,
     openings: Sequence[Opening] | None = None,
     *,
+    scan: Volume | None = None,
     method: str = "slicewise",
     preset: str = "default",
     progress: Progress | None = None,
@@ -43,6 +44,8 @@ def design(
         Bool mask of the skull, planes rising to the top of the head.
     openings : sequence of Opening, optional
         Openings to close; found automatically when not given.
+    scan : Volume, optional
+        HU on the same grid, by which openings that are not given are found; see `find_openings`.
     method : str
         A name of the catalogue.
     preset : str
@@ -75,7 +78,9 @@ def design(
     ('hull', {'axial': False, 'smooth': True})
     """
     check_request(method, preset, options)
-    openings = find_openings(bone) if openings is None else openings
+    _check_bone(bone)
+    openings = find_openings(bone, scan=scan) if openings is None else openings
+    _check_openings(bone, openings)
     # what is asked for goes before the preset, and the preset before the defaults
     parameters = default_options(method) | preset_options(method, preset, bone) | options
     own = {name: value for name, value in parameters.items() if name not in COMMON}
@@ -120,8 +125,7 @@ def assemble(
     InputRefused
         ``BadPiece`` where a method does not yield a piece on the bone's grid for each opening.
     """
-    if not len(openings):
-        raise NoOpening("NoOpening", "The list of openings is empty.", "Give one opening at least.")
+    _check_openings(bone, openings)
     report = progress or (lambda stage, done: None)
     began = time.perf_counter()
     report("design", 0.0)
@@ -195,6 +199,28 @@ def check_request(method: str, preset: str, options: dict[str, Any]) -> None:
     """
     check_preset(method, preset)
     check_options(method, options)
+
+
+def _check_bone(bone: Volume) -> None:
+    """Refuse what is no mask of a skull."""
+    if bone.voxels.dtype != bool:
+        message = f"The bone is given as {bone.voxels.dtype}; a bool mask is wanted."
+        raise InputRefused("NotAMask", message, "Make one with `cn.segment`.")
+    if min(bone.shape) < 2 or not bone.voxels.any():
+        message = f"The mask of the bone, shape {bone.shape}, holds no skull."
+        raise InputRefused("NoBone", message, "Give the mask of a whole vault.")
+
+
+def _check_openings(bone: Volume, openings: Sequence[Opening]) -> None:
+    """Refuse openings that are none, or that belong to another skull."""
+    if not len(openings):
+        raise NoOpening("NoOpening", "The list of openings is empty.", "Give one opening at least.")
+    for i, one in enumerate(openings, 1):
+        if not same_grid(bone, one.sheet):
+            message = f"Opening {i} has the shape {one.sheet.shape}, the bone {bone.shape}, or they lie apart."
+            raise InputRefused("GridMismatch", message, "Give openings on the bone's own grid.")
+        if not one.sheet.voxels.any() or not np.isfinite(one.head_centre).all():
+            raise InputRefused("NoHole", f"Opening {i} holds no voxel, or has no centre to be seen from.")
 
 
 def _check_piece(piece: Any, bone: Volume, method: str) -> None:

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +29,7 @@ from scipy.spatial import ConvexHull
 
 from ..geometry import voxel_pieces
 from ..opening import Opening
+from ..option import Option
 from ..stages import prosthesis_volume
 from ..vault import radius_measurement, radius_voxels
 from ..vault.ray_grid import RadiusMap
@@ -65,7 +66,12 @@ PRESETS = {"paper": {"axial": True}}
 """The paper uses the hull slice by slice along the planes of the scan."""
 
 
-def pieces(bone: Volume, openings: Sequence[Opening], *, axial: bool = False) -> Iterator[Piece]:
+def pieces(
+    bone: Volume,
+    openings: Sequence[Opening],
+    *,
+    axial: Annotated[bool, Option("Hulls of slices along the planes of the scan, not in space.")] = False,
+) -> Iterator[Piece]:
     """Close each opening by convex hulls.
 
     Parameters

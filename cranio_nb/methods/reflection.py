@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +33,7 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
+from ..option import Option
 from ..vault import radius_measurement, radius_voxels, symmetry
 from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane
@@ -84,7 +86,11 @@ PRESETS = {"paper": {"fit_rim": False}}
 
 
 def pieces(
-    bone: Volume, openings: Sequence[Opening], *, partial: bool = False, fit_rim: bool = True
+    bone: Volume,
+    openings: Sequence[Opening],
+    *,
+    partial: Annotated[bool, Option("Leave open what the other side lacks too, instead of refusing.")] = False,
+    fit_rim: Annotated[bool, Option("Bend the mirrored surfaces to meet the bone around the hole.")] = True,
 ) -> Iterator[Piece]:
     """Close each opening by mirroring the other side of the skull.
 
@@ -109,7 +115,7 @@ def pieces(
         ``MirrorMissing`` where the mirrored side is missing too; ``NoSymmetry`` when no plane is found.
     """
     # one plane for the whole skull, then each opening mirrored across it
-    plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre)
+    plane = symmetry.find_symmetry_plane(bone, openings[0].head_centre, openings[0].head_axes)
     made = [_mirrored(bone, opening, plane, fit_rim) for opening in openings]
     if not partial:
         _check_whole(made)

@@ -31,7 +31,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import comb
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,7 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
+from ..option import Option
 from ..prior.around_opening import predict_around
 from ..prior.file import load_prior
 from ..prior.shape_prior import Prior
@@ -91,10 +92,12 @@ def pieces(
     bone: Volume,
     openings: Sequence[Opening],
     *,
-    second_mm: float = 1.3,
-    third_mm: float = 1.8,
-    mirror_mm: float = 1.6,
-    prior: str = "",
+    # beyond 20 mm the plate no longer follows the bone that it lies on
+    second_mm: Annotated[float, Option("Smoothing by second order; 0 for none.", 0, 20, "mm")] = 1.3,
+    third_mm: Annotated[float, Option("Smoothing by third order; 0 for none.", 0, 20, "mm")] = 1.8,
+    mirror_mm: Annotated[float, Option("Smoothing towards the other side; 0 for none.", 0, 20, "mm")] = 1.6,
+    # no system takes longer paths
+    prior: Annotated[str, Option("File of `cranio-nb prior learn`; empty for none.", 0, 4096, "characters")] = "",
 ) -> Iterator[Piece]:
     """Close each opening by bending thin plates across it.
 
@@ -246,7 +249,7 @@ def _partial(index: NDArray[np.intp], down: int, across: int) -> sparse.csr_arra
 def _symmetry(bone: Volume, opening: Opening) -> tuple[SymmetryPlane | None, dict[str, Any]]:
     """The symmetry plane, if there is one, and what to record of it."""
     try:
-        plane = symmetry.find_symmetry_plane(bone, opening.head_centre)
+        plane = symmetry.find_symmetry_plane(bone, opening.head_centre, opening.head_axes)
     # a skull with too little of the other side still gets its plate, without that term
     except InputRefused as refused:
         return None, {"unused": refused.message}
@@ -263,7 +266,7 @@ def _plate(
     # all that is known of the vault on the rays: bone, its mirror image, the prior's mean
     radius_map = radius_measurement.measure_around(bone, opening)
     mirrored = None if plane is None else _other_side(bone, radius_map, plane)
-    expected = None if learned is None else _expected(bone, radius_map, learned)
+    expected = None if learned is None else _expected(bone, radius_map, learned, opening.head_axes)
     # a coarser grid of nodes for the plate; its hole keeps every node that any missing ray touches
     nodes = max(1, round(_NODES / radius_map.step_mm))
     hole = thin_map(radius_map.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
@@ -284,10 +287,10 @@ def _other_side(bone: Volume, radius_map: RadiusMap, plane: SymmetryPlane) -> tu
     return np.where(other.hole, np.nan, other.outer), np.where(other.hole, np.nan, other.inner)
 
 
-def _expected(bone: Volume, radius_map: RadiusMap, learned: Prior) -> tuple[Array, Array] | None:
+def _expected(bone: Volume, radius_map: RadiusMap, learned: Prior, axes: Array | None) -> tuple[Array, Array] | None:
     """Outer and inner radii that a prior predicts, continued where it does not reach; None where it never does."""
     # the prior is known on its coarser rays: blurred over their spacing, it has no facets
-    predicted = predict_around(learned, bone, radius_map)
+    predicted = predict_around(learned, bone, radius_map, axes)
     if not (np.isfinite(predicted.outer) & radius_map.hole).any():
         return None
     outer, inner = (

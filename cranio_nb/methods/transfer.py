@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from .catalogue import Method, add_method, added_methods, method_names
+from .catalogue import Method, added_methods, keep_method
 
 
 def pack_methods() -> bytes:
@@ -24,7 +24,7 @@ def pack_methods() -> bytes:
     import cloudpickle  # loaded only for own methods
 
     with _by_value(methods):
-        return bytes(cloudpickle.dumps([(m.name, m.pieces, m.presets) for m in methods]))
+        return bytes(cloudpickle.dumps(methods))
 
 
 def unpack_methods(packed: bytes) -> None:
@@ -35,9 +35,8 @@ def unpack_methods(packed: bytes) -> None:
     packed : bytes
         From `pack_methods`.
     """
-    for name, pieces, presets in pickle.loads(packed) if packed else ():
-        if name not in method_names():
-            add_method(name, pieces, presets=presets)
+    for method in pickle.loads(packed) if packed else ():
+        keep_method(method)
 
 
 @contextmanager

@@ -15,9 +15,10 @@ from ..drawing import figures, palette
 from ..drawing.coarse_skull import skull_surface
 from ..drawing.shading import view_axes
 from ..evaluation.against_truth import SIDES
-from ..evaluation.opening_size import OpeningSize, measure_opening
 from ..mesh import Mesh
 from ..pipeline.compare import MEASURES, Comparison
+from ..vault.remarks import opening_remarks
+from ..vault.verdict import rule_rows
 from .comparison_tables import tables
 from .pages import Shot, lowest_shown, page_template, shot
 
@@ -40,16 +41,17 @@ def comparison_page(comparison: Comparison) -> str:
         HTML that needs no other file.
     """
     # pictures need a prosthesis, maps need a reference; without them the template leaves their part out
-    openings = [measure_opening(one) for one in comparison.case.openings]
+    case = comparison.case
     return page_template("comparison.html").render(
         version=version("cranio-nb"),
         comparison=comparison,
-        openings=openings,
+        findings=opening_remarks(case.closed, case.left_open),
+        rule=rule_rows(),
         lines=dict(zip(comparison.made, _line_styles(len(comparison.made)), strict=True)),
         colours=palette,
         tables=tables(comparison),
         measures=MEASURES,
-        views=view_shots(comparison, openings) if comparison.made else {},
+        views=view_shots(comparison) if comparison.made else {},
         cuts=cut_shots(comparison) if comparison.made else [],
         maps=distance_shots(comparison),
         bar=_bar_shot(comparison) if comparison.distances else None,
@@ -57,15 +59,13 @@ def comparison_page(comparison: Comparison) -> str:
     )
 
 
-def view_shots(comparison: Comparison, openings: list[OpeningSize]) -> dict[str, list[Shot]]:
+def view_shots(comparison: Comparison) -> dict[str, list[Shot]]:
     """Shaded views of each prosthesis, and of the truth where it is known, all from the same sides.
 
     Parameters
     ----------
     comparison : Comparison
         With one prosthesis at least.
-    openings : list of OpeningSize
-        Those of its case.
 
     Returns
     -------
@@ -74,11 +74,11 @@ def view_shots(comparison: Comparison, openings: list[OpeningSize]) -> dict[str,
     """
     # one skull and two views for all contenders, so that only the prostheses differ
     case = comparison.case
-    skull = skull_surface(case.bone, lowest_shown(openings, case.openings[0]))
+    skull = skull_surface(case.bone, lowest_shown(case.sizes, case.openings[0]))
     shown = {name: made.mesh for name, made in comparison.made.items()}
     if comparison.true is not None:
         shown = {"truth": comparison.true.mesh} | shown
-    towards = list(figures.views_of([one.direction for one in openings]).items())[:_N_VIEWS]
+    towards = list(figures.views_of([one.direction for one in case.sizes]).items())[:_N_VIEWS]
     return {view: [_view_shot(name, mesh, skull, view, side) for name, mesh in shown.items()] for view, side in towards}
 
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from ..evaluation.opening_size import measure_opening
 from ..pipeline.compare import MEASURES, Comparison, records
+from ..vault.remarks import opening_remarks
 from .design_folder import load_record, versions
 
 
@@ -87,7 +87,9 @@ def comparison_record(comparison: Comparison) -> dict[str, Any]:
         "not_for_clinical_use": True,
         "load": load_record(comparison.case.load),
         "bone_threshold_hu": comparison.case.threshold,
-        "openings": [measure_opening(one) for one in comparison.case.openings],
+        "openings": [one.record() for one in comparison.case.closed],
+        "left_open": [one.record() for one in comparison.case.left_open],
+        "findings": opening_remarks(comparison.case.closed, comparison.case.left_open),
         "units": {key: what.unit for key, what in MEASURES.items()},
         "reference": comparison.reference,
         "methods": records(comparison),

@@ -153,7 +153,8 @@ def design_record(result: RunResult) -> dict[str, Any]:
     return made_record(result.prosthesis) | {
         "load": load_record(result.case.load),
         "bone_threshold_hu": result.case.threshold,
-        "openings": result.sizes,
+        "openings": [one.record() for one in result.case.closed],
+        "left_open": [one.record() for one in result.case.left_open],
         "preset": result.preset,
         "findings": result.findings,
         "measures": measures(result),

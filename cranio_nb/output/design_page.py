@@ -13,6 +13,7 @@ from ..evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES, STATUSES,
 from ..implant.mass import weigh_implant
 from ..pipeline.run import RunResult, parameters_used
 from ..prosthesis import DistanceStats
+from ..vault.verdict import rule_rows
 from .design_pictures import distance_shots, slice_shots, view_shots
 from .pages import page_template
 
@@ -43,6 +44,7 @@ def report_page(result: RunResult) -> str:
         counts=count_statuses(slices),
         statuses=STATUSES,
         implant=weigh_implant(made.mesh),
+        rule=rule_rows(),
         views=view_shots(result),
         pictures=slice_shots(result),
         balloons=balloon_tables(result),

@@ -29,10 +29,10 @@ def view_shots(result: RunResult) -> list[Shot]:
     list of Shot
     """
     # one coarse skull for all views, cut off above the face
-    skull = skull_surface(result.case.bone, lowest_shown(result.sizes, result.case.openings[0]))
-    where = "; ".join(one.place for one in result.sizes)
+    skull = skull_surface(result.case.bone, lowest_shown(result.case.sizes, result.case.openings[0]))
+    where = "; ".join(one.place for one in result.case.sizes)
     shots = []
-    for name, towards in figures.views_of([one.direction for one in result.sizes]).items():
+    for name, towards in figures.views_of([one.direction for one in result.case.sizes]).items():
         alt = (
             f"Shaded view {name}: the vault of the skull in ivory and the prosthesis in blue, which closes the opening "
             f"({where}). Letters at the edges name the patient's sides; the scale bar is 50 mm."
@@ -88,7 +88,7 @@ def distance_shots(result: RunResult) -> list[Shot]:
     if truth is None or not truth.distances:
         return []
     # one scale for both sides, the inner one seen from inside the head
-    top_mm, towards = _top_of_scale(truth), np.array(result.sizes[0].direction)
+    top_mm, towards = _top_of_scale(truth), np.array(result.case.sizes[0].direction)
     shots = []
     for side, label, sign in (("outer", OUTER, 1.0), ("inner", INNER, -1.0)):
         if side not in truth.distances:

@@ -12,8 +12,8 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
 from ..drawing import figures
-from ..evaluation.opening_size import OpeningSize
 from ..opening import Opening
+from ..vault.opening_size import OpeningSize
 
 _BELOW_CENTRE_MM, _BELOW_OPENING_MM = 10.0, 15.0  # bone shown below the head's centre, below the lowest opening
 

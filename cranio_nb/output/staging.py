@@ -14,6 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ..errors import CannotWrite
+from .files import write_whole
 from .manifest import MANIFEST, read_manifest, write_manifest
 from .part_folder import commit, part_folder, sweep
 
@@ -68,6 +69,37 @@ def staged(folder: Path, owned: Collection[str] = ()) -> Iterator[Path]:
         for parent in made:
             if parent.exists() and not any(parent.iterdir()):
                 parent.rmdir()
+
+
+def replace_file(path: Path, data: bytes) -> None:
+    """Write a file that belongs to no others, whole or not at all; what a killed run left beside it goes.
+
+    Parameters
+    ----------
+    path : Path
+        Folders above it are made where they are missing.
+    data : bytes
+
+    Raises
+    ------
+    CannotWrite
+        If the system refuses; what was there before is still there.
+
+    Examples
+    --------
+    >>> replace_file(Path("notes/a.txt"), b"words")
+    >>> [item.name for item in Path("notes").iterdir()]
+    ['a.txt']
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        sweep(path.parent)
+        with part_folder(path.parent) as part:
+            write_whole(part / "files" / path.name, data)
+            (part / "files" / path.name).replace(path)
+    except OSError as error:
+        reason = error.strerror or type(error).__name__
+        raise CannotWrite("CannotWrite", f"{path.name} could not be written: {reason}.") from error
 
 
 def _publish(part: Path, folder: Path, owned: Collection[str], stale: list[str]) -> None:

@@ -10,11 +10,12 @@ from os import PathLike
 from ..errors import InputRefused, NoOpening
 from ..opening import Opening
 from ..readers import LoadReport, read_ct
-from ..stages.segmentation import bone_of, threshold_of
-from ..vault.head_frame import find_head_frame
-from ..vault.opening_search import find_openings
-from ..vault.remarks import remarks
+from ..stages.segmentation import threshold_of
+from ..vault.opening_choice import JudgedOpening, choose_openings
+from ..vault.opening_size import OpeningSize
+from ..vault.remarks import orientation_remarks, thickness_remarks
 from ..volume import Volume, same_grid
+from .survey import survey_scan
 
 Progress = Callable[[str, float], None]
 
@@ -28,8 +29,8 @@ class Prepared:
     load : LoadReport
     bone : Volume
         Bool mask of the skull.
-    openings : tuple of Opening
-        The openings to close, the largest first.
+    closed, left_open : tuple of JudgedOpening
+        The openings to close, and all others, the largest first.
     threshold : float or None
         HU of the bone threshold; None for a mask.
     truth : Volume or None
@@ -40,10 +41,31 @@ class Prepared:
 
     load: LoadReport
     bone: Volume
-    openings: tuple[Opening, ...]
+    closed: tuple[JudgedOpening, ...]
+    left_open: tuple[JudgedOpening, ...]
     threshold: float | None
     truth: Volume | None
     seconds: dict[str, float]
+
+    @property
+    def openings(self) -> tuple[Opening, ...]:
+        """The openings to close, as methods take them.
+
+        Returns
+        -------
+        tuple of Opening
+        """
+        return tuple(one.opening for one in self.closed)
+
+    @property
+    def sizes(self) -> tuple[OpeningSize, ...]:
+        """Place and size of each of them.
+
+        Returns
+        -------
+        tuple of OpeningSize
+        """
+        return tuple(one.size for one in self.closed)
 
 
 def prepare(
@@ -52,6 +74,7 @@ def prepare(
     mask: bool | None = None,
     label: int | None = None,
     threshold: float | None = None,
+    opening: Collection[int] = (),
     planes: tuple[int, int] | None = None,
     truth: str | PathLike[str] | None = None,
     allow: Collection[str] = (),
@@ -69,6 +92,9 @@ def prepare(
         As for `read_ct`: the voxels of this value are bone.
     threshold : float, optional
         Lowest HU of bone; `segmentation.BONE_HU` when not given.
+    opening : collection of int
+        Numbers of the openings to close, as `cranio-nb inspect` lists them, doubtful and natural ones too; when empty,
+        those that were cut for sure.
     planes : tuple of int, optional
         First and last plane (both included): only what lies between them is closed.
     truth : path, optional
@@ -85,7 +111,7 @@ def prepare(
     Raises
     ------
     InputRefused
-        What cannot be read safely; ``OpeningLeavesImage``.
+        What cannot be read safely; ``NoSuchOpening``, ``OpeningLeavesImage``.
     NoOpening
         When there is nothing to close.
 
@@ -111,30 +137,33 @@ def prepare(
         check_truth_mask(known, scan)
     clock.lap("read")
     report("bone", 0.3)
-    bone = bone_of(scan, threshold)
-    frame = find_head_frame(bone)
-    load = replace(load, findings=(*load.findings, *remarks(bone, frame)))
-    found = find_openings(bone, scan=scan, frame=frame)
-    openings = found if planes is None else within_planes(found, planes)
-    for opening in openings:
-        check_margin(opening.sheet, "The opening of the skull")
+    seen = survey_scan(scan, threshold)
+    said = (*thickness_remarks(load.spacing[0]), *orientation_remarks(seen.frame))
+    load = replace(load, findings=(*load.findings, *said))
+    chosen = choose_openings(seen.found, opening)
+    closed = chosen if planes is None else within_planes(chosen, planes)
+    for one in closed:
+        check_margin(one.opening.sheet, f"Opening {one.number}")
+    numbers = {one.number for one in closed}
+    left_open = tuple(one for one in seen.found if one.number not in numbers)
     clock.lap("bone and openings")
-    return Prepared(load, bone, openings, threshold_of(scan, threshold), known, clock.seconds)
+    return Prepared(load, seen.bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
 
 
-def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tuple[Opening, ...]:
+def within_planes(openings: tuple[JudgedOpening, ...], planes: tuple[int, int]) -> tuple[JudgedOpening, ...]:
     """The parts of the openings that lie in a range of planes; openings elsewhere are left out.
 
     Parameters
     ----------
-    openings : tuple of Opening
+    openings : tuple of JudgedOpening
         At least one.
     planes : tuple of int
         First and last plane, both included.
 
     Returns
     -------
-    tuple of Opening
+    tuple of JudgedOpening
+        With their numbers.
 
     Raises
     ------
@@ -144,17 +173,18 @@ def within_planes(openings: tuple[Opening, ...], planes: tuple[int, int]) -> tup
         ``NoOpening`` when no opening meets it.
     """
     first, last = planes
-    n_planes = openings[0].sheet.shape[0]
+    n_planes = openings[0].opening.sheet.shape[0]
     if not 0 <= first <= last < n_planes:
         raise InputRefused("BadPlanes", f"Planes {first} to {last} are not a range within 0 to {n_planes - 1}.")
     parts = []
-    for opening in openings:
-        voxels = opening.sheet.voxels.copy()
+    for one in openings:
+        sheet = one.opening.sheet
+        voxels = sheet.voxels.copy()
         voxels[:first] = voxels[last + 1 :] = False
         if voxels.any():
-            parts.append(replace(opening, sheet=opening.sheet.with_voxels(voxels)))
+            parts.append(replace(one, opening=replace(one.opening, sheet=sheet.with_voxels(voxels))))
     if not parts:
-        spans = ", ".join(f"{a} to {b - 1}" for a, b in (opening.planes for opening in openings))
+        spans = ", ".join(f"{a} to {b - 1}" for a, b in (one.opening.planes for one in openings))
         message = f"No opening lies in planes {first} to {last}; openings were found in planes {spans}."
         raise NoOpening("NoOpening", message)
     return tuple(parts)

@@ -14,7 +14,6 @@ import numpy as np
 
 from ..errors import InputRefused
 from ..evaluation.against_truth import TruthCheck, check_truth
-from ..evaluation.opening_size import OpeningSize, measure_opening
 from ..evaluation.paper_tables import count_not_converged, count_statuses
 from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
@@ -24,6 +23,7 @@ from ..methods.design import check_request, design
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..readers import Finding
+from ..vault.remarks import opening_remarks
 from ..volume import Volume
 from .preparation import Clock, Prepared, Progress, check_margin, prepare, touches_border
 
@@ -39,8 +39,6 @@ class RunResult:
     ----------
     case : Prepared
         The scan and its openings.
-    sizes : tuple of OpeningSize
-        Place and size of each opening.
     preset : str
     prosthesis : Prosthesis
     mesh : MeshReport
@@ -54,7 +52,6 @@ class RunResult:
     """
 
     case: Prepared
-    sizes: tuple[OpeningSize, ...]
     preset: str
     prosthesis: Prosthesis
     mesh: MeshReport
@@ -73,6 +70,7 @@ def run_design(
     mask: bool | None = None,
     label: int | None = None,
     threshold: float | None = None,
+    opening: Collection[int] = (),
     planes: tuple[int, int] | None = None,
     truth: str | PathLike[str] | None = None,
     allow: Collection[str] = (),
@@ -96,6 +94,9 @@ def run_design(
         As for `read_ct`: takes the voxels of this value as bone.
     threshold : float, optional
         Lowest HU of bone; `segmentation.BONE_HU` when not given.
+    opening : collection of int
+        Numbers of the openings to close, as `cranio-nb inspect` lists them, doubtful and natural ones too; when empty,
+        those that were cut for sure.
     planes : tuple of int, optional
         First and last plane (both included): only what lies between them is closed.
     truth : path, optional
@@ -131,7 +132,15 @@ def run_design(
     check_request(method, preset, options)
     report = progress or (lambda step, done: None)
     case = prepare(
-        path, mask=mask, label=label, threshold=threshold, planes=planes, truth=truth, allow=allow, progress=report
+        path,
+        mask=mask,
+        label=label,
+        threshold=threshold,
+        opening=opening,
+        planes=planes,
+        truth=truth,
+        allow=allow,
+        progress=report,
     )
     clock = Clock(case.seconds)
     made = design(
@@ -149,9 +158,8 @@ def run_design(
     rim = rim_gap(made.surface(RIM), case.bone) if (made.sides == RIM).any() else None
     check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.openings[0].head_centre)
     clock.lap("measures")
-    found = _findings(made, mesh, case.openings)
-    sizes = tuple(measure_opening(opening) for opening in case.openings)
-    return RunResult(case, sizes, preset, made, mesh, rim, check, found, clock.seconds)
+    found = (*opening_remarks(case.closed, case.left_open), *_findings(made, mesh, case.openings))
+    return RunResult(case, preset, made, mesh, rim, check, found, clock.seconds)
 
 
 def check_patch(made: Prosthesis, openings: Sequence[Opening]) -> None:

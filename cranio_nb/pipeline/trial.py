@@ -170,10 +170,10 @@ def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contende
     with tempfile.TemporaryDirectory(prefix="cranio-nb-") as folder:
         for name, volume in [("bone", bone), *((str(i), one.sheet) for i, one in enumerate(openings))]:
             np.save(Path(folder) / f"{name}.npy", volume.voxels)
-        centres = [one.head_centre for one in openings]
+        places = [(one.head_centre, one.head_axes) for one in openings]
         with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
             try:
-                trial, patch = pool.submit(_child, folder, bone.affine, centres, contender, pack_methods()).result()
+                trial, patch = pool.submit(_child, folder, bone.affine, places, contender, pack_methods()).result()
             except BrokenProcessPool:
                 message = "The process of the method ended before its time; it may have run out of memory."
                 return Trial(contender, "broken", None, "ProcessEnded", message, *[float("nan")] * 3)
@@ -212,14 +212,14 @@ def peak_memory() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1e-6 if sys.platform == "darwin" else 1024e-6)
 
 
-def _child(folder: str, affine: Any, centres: list[Any], contender: Contender, methods: bytes) -> tuple[Trial, Any]:
+def _child(folder: str, affine: Any, places: list[Any], contender: Contender, methods: bytes) -> tuple[Trial, Any]:
     """The trial without its patch, and the flat indices of the patch: they are small, the grid is not."""
 
     def load(name: str) -> Volume:
         return Volume(np.asarray(np.load(Path(folder) / f"{name}.npy", mmap_mode="r")), affine)
 
     unpack_methods(methods)
-    openings = [Opening(load(str(i)), centre) for i, centre in enumerate(centres)]
+    openings = [Opening(load(str(i)), centre, axes) for i, (centre, axes) in enumerate(places)]
     trial = attempt(load("bone"), openings, contender)
     if trial.prosthesis is None or trial.prosthesis.patch is None:
         return trial, None

@@ -1,6 +1,6 @@
 """A skull laid on the mean head: points of both come in -> the affine frame that lays one on the other goes out.
 
-Frames: head (see `head_frame`); world mm (LPS).
+Frames: mean head (see `mean_frame`); world mm (LPS).
 
 Skulls can be compared ray by ray only where the same ray meets the same anatomy. A skull is laid on the mean head by
 its endocranium and by the outside of its vault. The fit is robust and has no landmarks, so a hole only takes points
@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from ..geometry.robust import geman_mcclure_weights, spread
-from .head_frame import MIRROR, HeadFrame, mirror_index
+from .mean_frame import MIRROR, MeanFrame, mirror_index
 from .skull_points import SkullPoints
 
 Array = NDArray[np.float64]
@@ -37,12 +37,12 @@ def mean_head(outlines: Array, directions: Array) -> SkullPoints:
         `measure_outline` of each skull in its own frame, outer and inner, along m symmetric directions; rays that fewer
         than half meet are left.
     directions : ndarray, shape (m, 3)
-        Unit vectors, head frame.
+        Unit vectors, mean frame.
 
     Returns
     -------
     SkullPoints
-        In the head frame.
+        In the mean frame.
     """
     # with the mirror images the mean is symmetric about x = 0; the median heeds no outlier
     both = np.concatenate([outlines, outlines[:, :, mirror_index(directions)]])
@@ -53,7 +53,7 @@ def mean_head(outlines: Array, directions: Array) -> SkullPoints:
     return SkullPoints(outer=outer, inner=inner, centre=np.zeros(3), axes=np.eye(3))
 
 
-def align(skull: SkullPoints, mean: SkullPoints, *, affine: bool = True) -> HeadFrame:
+def align(skull: SkullPoints, mean: SkullPoints, *, affine: bool = True) -> MeanFrame:
     """Lay a skull on the mean head.
 
     Parameters
@@ -67,7 +67,7 @@ def align(skull: SkullPoints, mean: SkullPoints, *, affine: bool = True) -> Head
 
     Returns
     -------
-    HeadFrame
+    MeanFrame
     """
     goal, some = _Goal.of(mean), skull.every_other()
     # the best of three starts, then all points, then all maps
@@ -78,21 +78,21 @@ def align(skull: SkullPoints, mean: SkullPoints, *, affine: bool = True) -> Head
         matrix, shift, misfit = goal.fit(skull, matrix, shift, 16, affine=True)
     # what lays the skull on the mean head, turned round: head -> world
     back = skull.axes @ np.linalg.inv(matrix)
-    return HeadFrame(back, skull.centre - back @ shift, misfit)
+    return MeanFrame(back, skull.centre - back @ shift, misfit)
 
 
-def centre_frames(frames: list[HeadFrame], skulls: list[SkullPoints]) -> list[HeadFrame]:
-    """Move the frames of all skulls together, so that the head frame is that of their mean head.
+def centre_frames(frames: list[MeanFrame], skulls: list[SkullPoints]) -> list[MeanFrame]:
+    """Move the frames of all skulls together, so that the mean frame is that of their mean head.
 
     Parameters
     ----------
-    frames : list of HeadFrame
+    frames : list of MeanFrame
     skulls : list of SkullPoints
         As many.
 
     Returns
     -------
-    list of HeadFrame
+    list of MeanFrame
     """
     # each frame relative to its skull's axes and centre, and the mean of these
     local = [skull.axes.T @ frame.matrix for frame, skull in zip(frames, skulls, strict=True)]
@@ -100,9 +100,9 @@ def centre_frames(frames: list[HeadFrame], skulls: list[SkullPoints]) -> list[He
     mean, place = np.mean(local, axis=0), np.mean(places, axis=0)
     # without what would leave the plane of symmetry
     mean = (mean + mean * np.outer(MIRROR, MIRROR)) / 2
-    # that mean becomes the identity: the head frame neither turns, grows nor drifts over the rounds
+    # that mean becomes the identity: the mean frame neither turns, grows nor drifts over the rounds
     turned, shift = np.linalg.inv(mean), place * [0.0, 1.0, 1.0]
-    return [HeadFrame(f.matrix @ turned, f.origin - f.matrix @ turned @ shift, f.misfit_mm) for f in frames]
+    return [MeanFrame(f.matrix @ turned, f.origin - f.matrix @ turned @ shift, f.misfit_mm) for f in frames]
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,6 +1,6 @@
 """A shape prior and a skull with a hole -> the vault most likely around the hole.
 
-Frames: head (see `head_frame`), radii in mm of the mean head; maps (v, u) of rays (see `vault.ray_grid`) with radii in
+Frames: mean head (see `mean_frame`), radii in mm of it; maps (v, u) of rays (see `vault.ray_grid`) with radii in
 mm of the skull; world mm (LPS).
 """
 
@@ -17,7 +17,7 @@ from ..vault.head_frame import head_or_grid_axes
 from ..vault.ray_grid import RadiusMap, RayGrid
 from ..volume import Volume
 from .alignment import align
-from .head_frame import HeadFrame
+from .mean_frame import MeanFrame
 from .shape_prior import Prior, conditional_mean
 from .skull_points import sample_surface
 from .vault_radii import (
@@ -46,17 +46,17 @@ class Prediction:
     ----------
     outer, inner : ndarray, shape (M, M)
         Conditional mean of the radii along the rays of the map, mm; nan where the prior does not reach.
-    frame : HeadFrame
+    frame : MeanFrame
         How the skull was laid on the mean head.
     """
 
     _: KW_ONLY
     outer: Array
     inner: Array
-    frame: HeadFrame
+    frame: MeanFrame
 
 
-def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Prediction:
+def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap, axes: Array | None = None) -> Prediction:
     """The most likely vault around an opening, given the bone that is there.
 
     Parameters
@@ -66,6 +66,8 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
         Bool mask of the skull with the hole; all of it informs, not only what the map shows.
     radius_map : RadiusMap
         Of the opening.
+    axes : ndarray, shape (3, 3), optional
+        `Opening.head_axes`; found in the bone when not given.
 
     Returns
     -------
@@ -77,7 +79,8 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
         ``PriorDoesNotFit`` when the skull does not lie on the mean head; ``NoVault``.
     """
     # rays of different skulls can be compared only in the frame of the mean head
-    frame = align(sample_surface(bone, head_or_grid_axes(bone)), prior.mean)
+    axes = head_or_grid_axes(bone) if axes is None else axes
+    frame = align(sample_surface(bone, axes), prior.mean)
     if frame.misfit_mm > _MISFIT_MM:
         message = f"The skull lies {frame.misfit_mm:.1f} mm off the prior's mean head; {_MISFIT_MM:g} mm is the most."
         raise InputRefused("PriorDoesNotFit", message, "Design without the prior, or learn one from such skulls.")
@@ -95,7 +98,7 @@ def predict_around(prior: Prior, bone: Volume, radius_map: RadiusMap) -> Predict
     return Prediction(outer=outer, inner=inner, frame=frame)
 
 
-def _rays_beside(grid: RayGrid, frame: HeadFrame) -> Mask:
+def _rays_beside(grid: RayGrid, frame: MeanFrame) -> Mask:
     """Which of the `vault_rays` lie on a map or a little beside it, shape (m,)."""
     # the map reaches to half its width; a ray counts by its angle with the map's middle
     directions = vault_rays() @ frame.matrix.T
@@ -104,7 +107,7 @@ def _rays_beside(grid: RayGrid, frame: HeadFrame) -> Mask:
     return wanted
 
 
-def _rays_through(radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mask:
+def _rays_through(radius_map: RadiusMap, frame: MeanFrame, middle: Array) -> Mask:
     """Which rays pass through the map's hole, on the outer or the inner side of the mean vault (2, m)."""
     through = np.zeros(len(vault_rays()), bool)
     for radius in middle:
@@ -114,14 +117,14 @@ def _rays_through(radius_map: RadiusMap, frame: HeadFrame, middle: Array) -> Mas
     return through
 
 
-def _radius_on(grid: RayGrid, frame: HeadFrame, points: Array) -> Array:
+def _radius_on(grid: RayGrid, frame: MeanFrame, points: Array) -> Array:
     """Radius of a surface given by points (k, 3), world, along the rays of a map, shape (M, M), mm."""
     away = points - grid.centre
     # scattered points of the surface -> the map's own rays, by a C1 interpolation over triangles
     index = np.indices((grid.n, grid.n)).reshape(2, -1).T
     values = CloughTocher2DInterpolator(grid.locate(away).T, np.linalg.norm(away, axis=1))(index)
     radius = values.reshape(grid.n, grid.n)
-    # what lies below the vault in the head frame was never learned
+    # what lies below the vault in the mean frame was never learned
     in_head = (grid.points(radius) - frame.origin) @ np.linalg.inv(frame.matrix).T
     with np.errstate(invalid="ignore"):
         below = in_head[..., 2] < np.cos(np.radians(VAULT_DEG)) * np.linalg.norm(in_head, axis=-1)

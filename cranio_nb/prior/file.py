@@ -1,13 +1,12 @@
-"""A shape prior -> a file, and back.
+"""A shape prior -> the bytes of a file, and back.
 
 The file is a NumPy archive of plain arrays (mm of the mean head, single precision), about 3 MB for 30 skulls. It is
-written whole or not at all, and read without pickle: nothing in it is ever run.
+read without pickle: nothing in it is ever run. What it would inflate to is bounded before anything is inflated.
 """
 
 from __future__ import annotations
 
-import os
-import tempfile
+import io
 import zipfile
 import zlib
 from pathlib import Path
@@ -15,40 +14,35 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import CannotWrite, InputRefused
+from ..errors import InputRefused
 from .shape_prior import Prior
 from .skull_points import SkullPoints
 from .vault_radii import vault_rays
 
 VERSION = 1
 """Of the file; another version is refused."""
+MAX_BYTES = 2**28
+"""Of its arrays together: some five thousand skulls."""
+_MAX_HEADER = 1000  # bytes that say an array's type and shape
 _REMEDY = "Make one with `cranio-nb prior learn`."
 
 
-def save_prior(prior: Prior, path: Path) -> None:
-    """Write a prior, whole or not at all.
+def pack_prior(prior: Prior) -> bytes:
+    """Pack a prior.
 
     Parameters
     ----------
     prior : Prior
-    path : Path
-        Of the file, in a folder that is there.
 
-    Raises
-    ------
-    CannotWrite
-        ``CannotWrite`` when the system refuses; what was there before is still there.
+    Returns
+    -------
+    bytes
+        Of the file.
     """
     outer, inner, radii = (np.asarray(a, np.float32) for a in (prior.mean.outer, prior.mean.inner, prior.radii))
-    # written beside its goal and moved there in one step
-    try:
-        with tempfile.TemporaryDirectory(prefix=".part-", dir=path.absolute().parent) as folder:
-            part = Path(folder) / "prior.npz"
-            np.savez_compressed(part, version=np.int64(VERSION), inside=inner, outside=outer, radii=radii)
-            os.replace(part, path)
-    except OSError as error:
-        reason = error.strerror or type(error).__name__
-        raise CannotWrite("CannotWrite", f"The prior could not be written: {reason}.") from error
+    packed = io.BytesIO()
+    np.savez_compressed(packed, version=np.int64(VERSION), inside=inner, outside=outer, radii=radii)
+    return packed.getvalue()
 
 
 def load_prior(path: Path) -> Prior:
@@ -67,14 +61,16 @@ def load_prior(path: Path) -> Prior:
     InputRefused
         ``NoPrior`` when there is no such file, or when it is no sound prior of this version.
     """
-    # without pickle: whatever the file holds, none of it is run
     try:
-        with open(path, "rb") as file, np.load(file, allow_pickle=False) as held:
-            version = int(held["version"])
-            arrays = {name: held[name] for name in held.files}
+        with open(path, "rb") as file, zipfile.ZipFile(file) as held:
+            _check_bytes(held)
+            version = int(_read_array(held, "version"))
+            arrays = {name: _read_array(held, name) for name in ("inside", "outside", "radii")}
+    except InputRefused:
+        raise
     except OSError as error:
         raise InputRefused("NoPrior", "The prior cannot be opened; is the path right?", _REMEDY) from error
-    except (ValueError, KeyError, TypeError, IndexError, AttributeError, EOFError, zlib.error) as error:
+    except (ValueError, KeyError, TypeError, EOFError, NotImplementedError, RuntimeError, zlib.error) as error:
         raise InputRefused("NoPrior", "The file is not a shape prior.", _REMEDY) from error
     except zipfile.BadZipFile as error:
         raise InputRefused("NoPrior", "The file is not a shape prior, or it is damaged.", _REMEDY) from error
@@ -82,6 +78,28 @@ def load_prior(path: Path) -> Prior:
         message = f"The prior has version {version}; this program reads version {VERSION}."
         raise InputRefused("NoPrior", message, _REMEDY)
     return _checked(arrays)
+
+
+def _check_bytes(held: zipfile.ZipFile) -> None:
+    """Refuse an archive whose own list promises more than is read."""
+    promised = sum(entry.file_size for entry in held.infolist())
+    if promised > MAX_BYTES:
+        message = f"The prior would take {promised / 1e6:.0f} MB; at most {MAX_BYTES / 1e6:.0f} MB are read."
+        raise InputRefused("NoPrior", message, _REMEDY)
+
+
+def _read_array(held: zipfile.ZipFile, name: str) -> NDArray:
+    """An array of an archive: as large as the archive's list says, or refused before it is allocated."""
+    entry = held.getinfo(f"{name}.npy")
+    # no more is inflated than the list says; without pickle, none of it is run
+    with held.open(entry) as stream:
+        if np.lib.format.read_magic(stream) != (1, 0):
+            raise ValueError("another form of array")
+        shape, _, dtype = np.lib.format.read_array_header_1_0(stream, max_header_size=_MAX_HEADER)
+        if not 0 <= entry.file_size - np.prod([float(n) for n in shape]) * dtype.itemsize <= _MAX_HEADER:
+            raise ValueError("the array is not as large as it says")
+    with held.open(entry) as stream:
+        return np.lib.format.read_array(stream, allow_pickle=False, max_header_size=_MAX_HEADER)
 
 
 def _checked(arrays: dict[str, NDArray]) -> Prior:

@@ -1,6 +1,6 @@
 """Intact skulls -> a shape prior.
 
-Frames: head (see `head_frame`), radii in mm of the mean head; world mm (LPS).
+Frames: mean head (see `mean_frame`), radii in mm of it; world mm (LPS).
 """
 
 from __future__ import annotations
@@ -12,20 +12,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
+from ..vault import opening_choice
 from ..vault.head_frame import head_or_grid_axes
 from ..vault.opening_search import survey_openings
 from ..volume import Volume
 from .alignment import align, centre_frames, mean_head
-from .head_frame import HeadFrame, even_directions
+from .mean_frame import MeanFrame, even_directions
 from .shape_prior import Prior
-from .skull_points import SkullPoints, measure_outline, sample_surface, vault_coverage
+from .skull_points import SkullPoints, measure_outline, sample_surface, vault_in_image
 from .vault_radii import interpolate_radius, local_median, measure_vault, mirror_radii, without_outliers
 
 Array = NDArray[np.float64]
 
 MIN_SKULLS = 2
 """Fewest skulls that make a prior."""
-_CLOSED = 0.98  # of the vault's rays that meet bone on an intact skull
+_IN_IMAGE = 0.98  # of the vault, of a scan of the whole head
 
 
 def learn_prior(bones: Iterable[Volume], progress: Callable[[str, float], None] | None = None) -> Prior:
@@ -69,26 +70,27 @@ def learn_prior(bones: Iterable[Volume], progress: Callable[[str, float], None] 
 _WHOLE = "A prior is learned from scans of whole, closed skulls."
 
 
-def check_intact(bone: Volume) -> None:
-    """Refuse what is not the skull of a whole head.
+def check_intact(bone: Volume, scan: Volume | None = None) -> None:
+    """Refuse what is not the intact skull of a whole head.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
+    scan : Volume, optional
+        HU on the same grid, which shows bone too thin for the threshold.
 
     Raises
     ------
     InputRefused
-        ``NotIntact`` where rays of the vault meet no bone; ``NoVault``.
+        ``NotIntact`` where the skull has an opening that was cut; ``VaultLeavesImage`` where a part of the vault lies
+        outside the image; ``NoVault``.
     """
-    covered = vault_coverage(bone)
-    if covered < _CLOSED:
-        message = f"{100 * (1 - covered):.0f} % of the vault is open or outside the image."
-        raise InputRefused("NotIntact", message, _WHOLE)
-    n_cut = sum(one.verdict.designed for one in survey_openings(bone))
-    if n_cut:
-        raise InputRefused("NotIntact", f"The vault has {n_cut} openings that were cut.", _WHOLE)
+    share = vault_in_image(bone)
+    if share < _IN_IMAGE:
+        message = f"{100 * (1 - share):.0f} % of the vault lies outside the image."
+        raise InputRefused("VaultLeavesImage", message, _WHOLE)
+    opening_choice.check_intact(survey_openings(bone, scan=scan), _WHOLE)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,7 +113,7 @@ class _Packed:
 
 def _lay_together(
     packed: list[_Packed], skulls: list[SkullPoints], report: Callable[[str, float], None]
-) -> tuple[SkullPoints, list[HeadFrame]]:
+) -> tuple[SkullPoints, list[MeanFrame]]:
     """The mean head and each skull's frame on it: laid on the first skull by similarities, then twice on the mean."""
     mean, directions = skulls[0], even_directions(4)
     for turn, affine in enumerate((False, True, True)):

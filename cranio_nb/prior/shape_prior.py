@@ -1,6 +1,6 @@
 """What vaults look like: the radii of intact skulls, and with them the most likely radii where some are unknown.
 
-Frame: head (see `head_frame`); radii in mm of the mean head along directions from its origin.
+Frame: mean head (see `mean_frame`); radii in mm of the mean head along directions from its origin.
 
 Every intact skull is laid on the mean head, and its outer and inner radius are measured along the same 6400 rays. With
 the mirror images as further skulls, these are samples f_1 .. f_m of a Gaussian process with mean mu and covariance

@@ -1,6 +1,6 @@
 """Points of a skull's inside and outside along rays: a bone mask comes in -> points go out.
 
-Frames: head (see `head_frame`); world mm (LPS).
+Frames: mean head (see `mean_frame`); world mm (LPS).
 
 The endocranium is sampled down to the skull base, whose fossae and ridges fix the tilt that the smooth vault leaves
 open; the outside is sampled on the vault only.
@@ -13,10 +13,11 @@ from dataclasses import KW_ONLY, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..grid import inside_grid
 from ..vault.head_frame import head_or_grid_axes
 from ..vault.orientation import head_centre
 from ..volume import Volume
-from .head_frame import HeadFrame, even_directions
+from .mean_frame import MeanFrame, even_directions
 
 Array = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ class SkullPoints:
     Parameters
     ----------
     outer, inner : ndarray, shape (n, 3)
-        Of the outer vault and of the endocranium; mm along `axes` from `centre`, or of the head frame.
+        Of the outer vault and of the endocranium; mm along `axes` from `centre`, or of the mean frame.
     centre : ndarray, shape (3,)
         World mm.
     axes : ndarray, shape (3, 3)
@@ -90,13 +91,13 @@ def sample_surface(bone: Volume, axes: Array) -> SkullPoints:
         ``NoVault`` when the mask holds no skull vault.
     """
     centre, directions = head_centre(bone, axes), even_directions(4)
-    radii = measure_outline(bone, HeadFrame(axes.T, centre), directions)
+    radii = measure_outline(bone, MeanFrame(axes.T, centre), directions)
     outer, inner = ((directions * radius[:, None])[np.isfinite(radius)] for radius in radii)
     return SkullPoints(outer=outer, inner=inner, centre=centre, axes=axes.T)
 
 
-def vault_coverage(bone: Volume) -> float:
-    """Share of the vault's rays that meet bone.
+def vault_in_image(bone: Volume) -> float:
+    """Share of the vault that lies inside the image, open or closed.
 
     Parameters
     ----------
@@ -106,32 +107,41 @@ def vault_coverage(bone: Volume) -> float:
     Returns
     -------
     float
-        0 to 1: next to 1 for an intact skull of a whole head.
+        0 to 1: 1 for a whole head.
 
     Raises
     ------
     InputRefused
         ``NoVault``.
+
+    Notes
+    -----
+    On a ray without bone the vault is taken to lie where it does on most others.
     """
-    on_vault = even_directions(4)[:, 2] > np.cos(np.radians(_VAULT_DEG))
-    return len(sample_surface(bone, head_or_grid_axes(bone)).outer) / int(np.count_nonzero(on_vault))
+    axes, directions = head_or_grid_axes(bone), even_directions(4)
+    centre = head_centre(bone, axes)
+    outer = measure_outline(bone, MeanFrame(axes.T, centre), directions)[0]
+    on_vault = directions[:, 2] > np.cos(np.radians(_VAULT_DEG))
+    expected = np.where(np.isfinite(outer), outer, np.nanmedian(outer))[on_vault]
+    points = centre + (directions[on_vault] @ axes) * expected[:, None]
+    return float(inside_grid(bone.to_voxel(points), bone.shape).mean())
 
 
-def measure_outline(bone: Volume, frame: HeadFrame, directions: Array) -> tuple[Array, Array]:
-    """Last and first bone along rays of the head frame.
+def measure_outline(bone: Volume, frame: MeanFrame, directions: Array) -> tuple[Array, Array]:
+    """Last and first bone along rays of the mean frame.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    frame : HeadFrame
+    frame : MeanFrame
     directions : ndarray, shape (n, 3)
-        Unit vectors, head frame.
+        Unit vectors, mean frame.
 
     Returns
     -------
     outer, inner : ndarray, shape (n,)
-        mm of the head frame; nan for none. The outer radius is looked for on the vault only, the inner one down to the
+        mm of the mean frame; nan for none. The outer radius is looked for on the vault only, the inner one down to the
         skull base.
     """
     # bone or none at even steps along each ray

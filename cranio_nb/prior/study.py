@@ -1,6 +1,6 @@
 """A folder of scans -> the intact skulls in it; a shape prior -> how well it predicts skulls it was not given.
 
-Frame: head (see `head_frame`); radii in mm of the mean head.
+Frame: mean head (see `mean_frame`); radii in mm of the mean head.
 """
 
 from __future__ import annotations
@@ -102,7 +102,7 @@ def read_intact_skulls(
         try:
             scan = read_ct(path)[0]
             bone = bone_of(scan, None if scan.voxels.dtype == bool else threshold)
-            check_intact(bone)
+            check_intact(bone, scan)
         except CranioError as error:
             skipped(path.name, error.message)
             continue

@@ -1,6 +1,6 @@
-"""The vault of a skull as two maps over the rays of the head frame: a bone mask and its frame come in -> maps go out.
+"""The vault of a skull as two maps over the rays of the mean frame: a bone mask and its frame come in -> maps go out.
 
-Frames: head (see `head_frame`); radii in mm of the mean head, outer side first. All maps are over `vault_rays`, shape
+Frame: mean head (see `mean_frame`); radii in mm of it, outer side first. All maps are over `vault_rays`, shape
 (..., m); the distance between two rays is their chord on a sphere of the vault's size, in mm.
 """
 
@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from ..vault.ray_casting import surface_radii
 from ..volume import Volume
-from .head_frame import HeadFrame, even_directions, mirror_index
+from .mean_frame import MeanFrame, even_directions, mirror_index
 
 Array = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -33,7 +33,7 @@ def vault_rays() -> Array:
     Returns
     -------
     ndarray, shape (m, 3)
-        Unit vectors of the head frame, about 3 mm apart on the vault, symmetric about x = 0; read-only.
+        Unit vectors of the mean frame, about 3 mm apart on the vault, symmetric about x = 0; read-only.
 
     Examples
     --------
@@ -61,14 +61,14 @@ def mirror_radii(radii: NDArray) -> NDArray:
     return radii[..., mirror_index(vault_rays())]
 
 
-def measure_vault(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
+def measure_vault(bone: Volume, frame: MeanFrame, middle: Array) -> Array:
     """Outer and inner radius of a skull along `vault_rays`.
 
     Parameters
     ----------
     bone : Volume
         Bool mask.
-    frame : HeadFrame
+    frame : MeanFrame
     middle : ndarray, shape (m,)
         Outer radius of the mean head, mm.
 
@@ -78,7 +78,7 @@ def measure_vault(bone: Volume, frame: HeadFrame, middle: Array) -> Array:
         Outer and inner radius, mm of the mean head; nan where a ray meets no bone.
     """
     rays = vault_rays()
-    # a ray of the head frame in the world, and its length there: radii in mm of the mean head
+    # a ray of the mean frame in the world, and its length there: radii in mm of the mean head
     stretch = frame.stretch(rays)
     directions = rays @ frame.matrix.T / stretch[:, None]
     outer, inner = surface_radii(bone, frame.origin, directions, middle * stretch)
@@ -91,7 +91,7 @@ def interpolate_radius(points: Array) -> Array:
     Parameters
     ----------
     points : ndarray, shape (n, 3)
-        Of the surface, head frame.
+        Of the surface, mean frame.
 
     Returns
     -------

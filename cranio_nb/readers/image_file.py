@@ -129,9 +129,10 @@ def _values(
 
 
 def _scaled(raw: NDArray, slope: float, intercept: float) -> NDArray:
-    """The values: whole numbers stay whole."""
-    if raw.dtype.kind in "iu" and slope.is_integer() and intercept.is_integer():
-        wide = np.int32 if raw.itemsize <= 2 and abs(slope) < 2**14 and abs(intercept) < 2**30 else np.int64
+    """The values: whole numbers stay whole, as long as none can pass the range of whole numbers."""
+    small = raw.itemsize <= 4 and abs(slope) < 2**14 and abs(intercept) < 2**30
+    if small and raw.dtype.kind in "iu" and slope.is_integer() and intercept.is_integer():
+        wide = np.int32 if raw.itemsize <= 2 else np.int64
         return raw.astype(wide) * int(slope) + int(intercept)
     # plane by plane, so that no second volume in double precision is made
     values = np.empty_like(raw, dtype=np.float32)

@@ -67,9 +67,7 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
         header = _header(data)
         shape = check_shape([int(n) for n in header.get_data_shape()])
         dtype = _dtype(header)
-        offset = int(header.get_data_offset())
-        if not header.sizeof_hdr <= offset <= _MAX_OFFSET:
-            raise _corrupt(f"its voxels are said to start at byte {offset}")
+        offset = _offset(header)
         count = int(np.prod(shape)) * dtype.itemsize
         check_promise(count, size if packed else size - offset, packing=GZIP_PACKING if packed else 1)
         data.seek(offset)
@@ -110,9 +108,20 @@ def _header(data: BinaryIO) -> Any:
         raise _corrupt(f"its header cannot be parsed ({type(error).__name__})") from None
 
 
+def _offset(header: Any) -> int:
+    """Where the voxels start, bytes; NIfTI-1 keeps it as a real number, which may be none."""
+    start = float(header["vox_offset"])
+    if not header.sizeof_hdr <= start <= _MAX_OFFSET:
+        raise _corrupt(f"its voxels are said to start at byte {start:g}")
+    return int(start)
+
+
 def _dtype(header: Any) -> np.dtype:
     """Type of the voxels: integers or real numbers of up to 8 bytes."""
-    dtype = np.dtype(header.get_data_dtype())
+    try:
+        dtype = np.dtype(header.get_data_dtype())
+    except KeyError:
+        raise _corrupt(f"its type of voxels has the code {int(header['datatype'])}") from None
     if dtype.kind not in "iuf" or dtype.itemsize > 8:
         message = f"The voxels are of the type {dtype.name}; integers or real numbers are wanted."
         raise InputRefused("UnsupportedPixels", message, "Convert the image to 16-bit integers.")

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused
+from ..option import THRESHOLD
 from ..volume import Volume
 
-BONE_HU = 400.0
+BONE_HU: float = THRESHOLD.default
 """Lowest HU of bone (the paper, section 2)."""
 
 AIR_HU = -300.0
@@ -142,7 +143,7 @@ def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
     Raises
     ------
     InputRefused
-        ``ThresholdOfMask`` when a mask comes with a threshold.
+        ``ThresholdOfMask`` when a mask comes with a threshold; ``BadOption`` for one that is none of bone.
 
     Examples
     --------
@@ -150,7 +151,7 @@ def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
     400.0
     """
     if scan.voxels.dtype != bool:
-        return BONE_HU if threshold is None else threshold
+        return BONE_HU if threshold is None else float(THRESHOLD.check("The threshold", threshold))
     if threshold is not None:
         raise InputRefused("ThresholdOfMask", "A bone mask has no HU to set a threshold on.", "Leave it out.")
     return None

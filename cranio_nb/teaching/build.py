@@ -18,7 +18,8 @@ from nbclient import NotebookClient
 from nbclient.exceptions import CellExecutionError
 from nbformat import NotebookNode
 
-from ..errors import CannotWrite, InputRefused
+from ..errors import InputRefused
+from ..output.staging import replace_file
 from .lesson_text import METADATA, cell_ids, read_lesson, tags
 from .student_copy import exercise_copy
 
@@ -46,10 +47,13 @@ def build(folder: Path, only: str = "") -> list[Path]:
     ------
     InputRefused
         ``NoLessons``; ``BadLesson`` where a text breaks the rules of `lesson_text` or a cell fails.
+    CannotWrite
+        Where the system refuses.
     """
     made = []
     for path, notebook in _notebooks(folder, only):
-        _write(path, notebook)
+        nbformat.validate(notebook)
+        replace_file(path, (nbformat.writes(notebook) + "\n").encode())
         made.append(path)
     return made
 
@@ -204,16 +208,3 @@ def _comparable(notebook: NotebookNode) -> list[Any]:
             written.append((output.output_type, output.get("text"), output.get("ename"), data.get("text/plain"), alts))
         found.append((cell.id, cell.cell_type, cell.source, tags(cell), cell.get("execution_count"), written))
     return found
-
-
-def _write(path: Path, notebook: NotebookNode) -> None:
-    """Write a notebook whole or not at all."""
-    nbformat.validate(notebook)
-    part = path.with_name(f".{path.name}.part")
-    try:
-        path.parent.mkdir(exist_ok=True)
-        part.write_text(nbformat.writes(notebook) + "\n", encoding="utf-8")
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise CannotWrite("CannotWrite", f"{path.name} could not be written ({type(error).__name__}).") from None

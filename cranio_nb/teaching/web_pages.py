@@ -13,6 +13,7 @@ from jinja2 import DictLoader
 from nbconvert import HTMLExporter
 
 from ..errors import InputRefused
+from ..output.files import write_text
 from ..output.staging import staged
 
 _PICTURE = """
@@ -60,5 +61,5 @@ def write_pages(folder: Path, out: Path) -> list[Path]:
     # written only when all pages are made, and together
     with staged(out) as part:
         for name, text in pages.items():
-            (part / f"{name}.html").write_text(text, encoding="utf-8")
+            write_text(part / f"{name}.html", text)
     return [out / f"{name}.html" for name in pages]

@@ -82,6 +82,22 @@ class HeadFrame:
         return self.axes if self.confidence >= SURE else self.grid_axes
 
     @property
+    def ray_axes(self) -> Array:
+        """The axes of the grid where the head lies straight enough on it, else its own, where the bone shows them.
+
+        What is measured along rays about the vertex bears a turned head, but moves a little with the axes it is
+        measured in, and those of the grid do not change when a hole is cut.
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+        """
+        axes = self.trusted_axes
+        # the angle of the rotation from one to the other follows from its trace
+        turn_deg = np.degrees(np.arccos(np.clip((np.trace(axes @ self.grid_axes.T) - 1) / 2, -1, 1)))
+        return axes if turn_deg > _STRAIGHT_DEG else self.grid_axes
+
+    @property
     def tilt_deg(self) -> float:
         """Angle between the head's top and that of the scan.
 
@@ -153,10 +169,7 @@ def _on_own_axes(bone: Volume, grid_axes: Array) -> Volume:
 
 
 def head_or_grid_axes(bone: Volume) -> Array:
-    """The axes of the grid where the head lies straight enough on it, else its own, where the bone shows them.
-
-    What is measured along rays about the vertex bears a turned head, but moves a little with the axes it is measured
-    in, and those of the grid do not change when a hole is cut.
+    """The axes that rays are laid along, found from the bone: `HeadFrame.ray_axes`.
 
     Parameters
     ----------
@@ -166,13 +179,9 @@ def head_or_grid_axes(bone: Volume) -> Array:
     Returns
     -------
     ndarray, shape (3, 3)
-        Rows: left, back and up, orthonormal, world.
+        Rows: left, back and up, orthonormal, world; those of the grid where the bone encloses no cavity.
     """
-    grid_axes = head_axes(bone)
     try:
-        axes = find_head_frame(bone).trusted_axes
+        return find_head_frame(bone).ray_axes
     except InputRefused:
-        return grid_axes
-    # the angle of the rotation from one to the other follows from its trace
-    turn_deg = np.degrees(np.arccos(np.clip((np.trace(axes @ grid_axes.T) - 1) / 2, -1, 1)))
-    return axes if turn_deg > _STRAIGHT_DEG else grid_axes
+        return head_axes(bone)

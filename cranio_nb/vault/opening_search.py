@@ -8,97 +8,29 @@ side by side belong to the same one. Nothing has to be clicked.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ..errors import InputRefused, NoOpening
 from ..grid import inside_grid
 from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
-from .orientation import head_centre
-from .ray_casting import FAR_MM, NEAR_MM
-from .ray_grid import RayGrid, filled_from_nearest
+from .opening_choice import JudgedOpening, choose_openings
+from .outermost_bone import STEP_DEG, OutermostBone, lies_in_image, measure_outermost_bone, open_rays
+from .ray_grid import filled_from_nearest
 from .thin_bone import Material
-from .verdict import Signs, Verdict, judge
+from .verdict import Signs, judge
 
-_STEP_DEG = 1.5  # degrees between rays: 2 mm on the vault
-_SEARCHED_DEG = 102.0  # from the vertex down to which the vault is searched; further down lie orbits and base
-_BESIDE_DEG = 10.0  # more, so that an opening can be followed over the border
-_BASE_DEG = 88.0  # an opening that lies wholly further down is an orbit, an ear canal, the base
-_BROW_DEG = 10.0  # by which the line between vault and base rises in front and falls behind
-_SIDE_DEG = 90.0  # the vault proper, over which its radius is averaged
-_SEEN = 0.75  # of the width of a small opening that is seen through, where rays cross a thick wall aslant
-_SAMPLE_MM = 0.75  # along a ray
-_EDGE_MM = 3.0  # a ray that leaves the image so far before its neighbours meet bone is not followed to the end
 _MIDDLE = 0.7  # of the distance from the rim to the innermost ray
 _ABOVE_MM, _BULGE = 2.0, 0.2  # by which bone may stand above the surface bridged from the rim; and for each mm to it
 _WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
 
 
-@dataclass(frozen=True, eq=False)
-class OutermostBone:
-    """The outermost bone along rays about the vertex.
-
-    Parameters
-    ----------
-    grid : RayGrid
-        n rays along each side; the middle one points to the vertex.
-    radius : ndarray, shape (n, n)
-        Distance to the outermost bone, mm; nan where there is none.
-    followed : ndarray of bool, shape (n, n)
-        Rays that stay in the image far enough to meet the vault.
-    """
-
-    grid: RayGrid
-    radius: NDArray[np.float64]
-    followed: NDArray[np.bool_]
-
-    def within(self, degrees: float) -> NDArray[np.bool_]:
-        """Rays up to an angle from the vertex.
-
-        Parameters
-        ----------
-        degrees : float
-
-        Returns
-        -------
-        ndarray of bool, shape (n, n)
-        """
-        return self.grid.polar <= np.radians(degrees) + 1e-9
-
-    @property
-    def above_base(self) -> NDArray[np.bool_]:
-        """Rays above the line between vault and base, which rises to the brow in front and falls to the nape behind.
-
-        Returns
-        -------
-        ndarray of bool, shape (n, n)
-        """
-        v, _ = self.grid.offsets
-        front = -v / np.maximum(self.grid.polar, 1e-9)
-        return self.grid.polar <= np.radians(_BASE_DEG - _BROW_DEG * front) + 1e-9
-
-    @property
-    def typical_radius(self) -> float:
-        """Median radius of the vault.
-
-        Returns
-        -------
-        float
-            mm.
-        """
-        return float(np.nanmedian(self.radius[self.within(_SIDE_DEG)]))
-
-
 def find_openings(
     bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = 8.0
 ) -> tuple[Opening, ...]:
-    """Find every opening of the vault.
+    """Find every opening of the vault that was cut.
 
     Parameters
     ----------
@@ -131,27 +63,8 @@ def find_openings(
     >>> len(find_openings(Volume(case.bone, case.affine)))
     3
     """
-    return tuple(
-        one.opening
-        for one in require_cut(survey_openings(bone, scan=scan, frame=frame, min_diameter_mm=min_diameter_mm))
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class JudgedOpening:
-    """An opening with the verdict on it.
-
-    Parameters
-    ----------
-    opening : Opening
-    verdict : Verdict
-    whole : bool
-        Whether all of it lies inside the image.
-    """
-
-    opening: Opening
-    verdict: Verdict
-    whole: bool
+    found = survey_openings(bone, scan=scan, frame=frame, min_diameter_mm=min_diameter_mm)
+    return tuple(one.opening for one in choose_openings(found))
 
 
 def survey_openings(
@@ -173,12 +86,19 @@ def survey_openings(
     Returns
     -------
     tuple of JudgedOpening
-        Largest first.
+        Largest first, numbered from 1.
 
     Raises
     ------
     InputRefused
         ``NoVault``.
+
+    Examples
+    --------
+    >>> from data_synth import phantom_case
+    >>> case = phantom_case("tiny", "bilateral", 0)
+    >>> [(one.number, one.verdict.kind) for one in survey_openings(Volume(case.bone, case.affine))]
+    [(1, 'cut'), (2, 'cut')]
     """
     frame = frame or find_head_frame(bone)
     outermost = measure_outermost_bone(bone, frame.trusted_axes)
@@ -188,102 +108,11 @@ def survey_openings(
     radius = _bridged_radius(outermost, groups)
     material = Material.of(bone, scan, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
     judged = []
-    for rays in groups:
+    for number, rays in enumerate(groups, 1):
         signs = _signs(bone, outermost, rays, radius, material, frame)
-        opening = Opening(_sheet(bone, outermost.grid, rays, radius), outermost.grid.centre)
-        surface = outermost.grid.centre + outermost.grid.directions[rays] * radius[rays][:, None]
-        whole = outermost.followed[rays].all() and inside_grid(bone.to_voxel(surface), bone.shape).all()
-        judged.append(JudgedOpening(opening, judge(signs), bool(whole)))
+        opening = Opening(_sheet(bone, outermost, rays, radius), outermost.grid.centre, frame.ray_axes)
+        judged.append(JudgedOpening(number, opening, judge(signs), lies_in_image(outermost, rays)))
     return tuple(judged)
-
-
-def require_cut(found: Sequence[JudgedOpening]) -> tuple[JudgedOpening, ...]:
-    """The openings that are closed without being chosen: this decides whether a skull is intact.
-
-    Parameters
-    ----------
-    found : sequence of JudgedOpening
-
-    Returns
-    -------
-    tuple of JudgedOpening
-        At least one, in the same order.
-
-    Raises
-    ------
-    NoOpening
-        ``NoOpening`` when none was cut for sure; the message says what is doubtful.
-    InputRefused
-        ``OpeningLeavesImage``.
-    """
-    cut = tuple(one for one in found if one.verdict.designed)
-    if any(not one.whole for one in cut):
-        raise InputRefused(
-            "OpeningLeavesImage",
-            "The opening of the skull reaches the edge of the image, so part of its rim is missing.",
-            "Use a scan that covers the whole opening.",
-        )
-    if not cut:
-        doubtful = [one for one in found if one.verdict.doubtful]
-        reasons = "".join(f" Doubtful: {one.verdict.reason}" for one in doubtful)
-        raise NoOpening("NoOpening", f"The vault of this skull has no opening; there is nothing to close.{reasons}")
-    return cut
-
-
-def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> OutermostBone:
-    """Measure the vault along rays about the vertex.
-
-    Parameters
-    ----------
-    bone : Volume
-        Bool mask of the skull.
-    axes : ndarray, shape (3, 3)
-        Rows: the head's left, back and up, orthonormal, world.
-
-    Returns
-    -------
-    OutermostBone
-    """
-    half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / _STEP_DEG))
-    grid = RayGrid(head_centre(bone, axes), axes, np.radians(_STEP_DEG), 2 * half + 1)
-    directions = grid.directions
-    # outwards: the last bone met stays
-    start, step = bone.to_voxel(grid.centre), bone.steps(directions)
-    radius, last_inside = np.full(directions.shape[:2], np.nan), np.zeros(directions.shape[:2])
-    for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM):
-        index = start + length * step
-        last_inside[inside_grid(index, bone.shape)] = length
-        radius[bone.at_index(index, outside=False)] = length
-    return OutermostBone(grid, radius, last_inside >= filled_from_nearest(radius) - _EDGE_MM)
-
-
-def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[np.bool_]]:
-    """Rays that leave through one opening each.
-
-    Parameters
-    ----------
-    outermost : OutermostBone
-    min_diameter_mm : float
-        Width of the smallest opening.
-
-    Returns
-    -------
-    list of ndarray of bool, shape (n, n)
-        Largest first.
-    """
-    # an opening has a core in which a disk of the smallest diameter fits; the core grows back to the rim
-    reach = _SEEN * np.degrees(min_diameter_mm / 2 / outermost.typical_radius) / _STEP_DEG
-    free = np.isnan(outermost.radius) & outermost.within(_SEARCHED_DEG + _BESIDE_DEG)
-    core = (ndimage.distance_transform_edt(free) > reach) & outermost.within(_SEARCHED_DEG)
-    grown = ndimage.binary_dilation(core, _disk(reach + 1), mask=free)
-    labels, n_groups = ndimage.label(grown, np.ones((3, 3)))
-    on_vault = outermost.above_base
-    groups = []
-    for rays in (labels == i for i in range(1, n_groups + 1)):
-        if not (rays & core & on_vault).any():  # also a pocket beside the hole, without a core
-            continue
-        groups.append(rays)
-    return sorted(groups, key=np.count_nonzero, reverse=True)
 
 
 def _bridged_radius(outermost: OutermostBone, groups: list[NDArray[np.bool_]]) -> NDArray[np.float64]:
@@ -304,7 +133,7 @@ def _signs(
     frame: HeadFrame,
 ) -> Signs:
     """What an opening and its surroundings show."""
-    grid, step_mm = outermost.grid, np.radians(_STEP_DEG) * outermost.typical_radius
+    grid, step_mm = outermost.grid, np.radians(STEP_DEG) * outermost.typical_radius
     # bone in the middle of the opening, away from the blurred rim
     width = ndimage.distance_transform_edt(rays)
     middle = width >= _MIDDLE * width.max()
@@ -325,8 +154,9 @@ def _signs(
     )
 
 
-def _sheet(bone: Volume, grid: RayGrid, rays: NDArray[np.bool_], radius: NDArray[np.float64]) -> Volume:
-    """Voxels of a coarse sheet across one opening, about 4 mm thick."""
+def _sheet(bone: Volume, outermost: OutermostBone, rays: NDArray[np.bool_], radius: NDArray[np.float64]) -> Volume:
+    """Voxels of a coarse sheet across one opening, about 4 mm thick; at the edge of the image where it is outside."""
+    grid, radius = outermost.grid, np.minimum(radius, outermost.seen)
     # three rays for one: they lie closer than the voxels of any scan
     grown = ndimage.zoom(rays.astype(np.uint8), 3, order=0, grid_mode=True, mode="nearest").astype(bool)
     directions, lengths = (
@@ -340,10 +170,3 @@ def _sheet(bone: Volume, grid: RayGrid, rays: NDArray[np.bool_], radius: NDArray
     voxels = np.zeros(bone.shape, bool)
     voxels[tuple(index.T)] = True
     return bone.with_voxels(voxels & ~bone.voxels)
-
-
-def _disk(radius: float) -> NDArray[np.bool_]:
-    """Round structuring element."""
-    r = int(np.ceil(radius))
-    v, u = np.mgrid[-r : r + 1, -r : r + 1]
-    return np.hypot(u, v) <= radius + 0.5

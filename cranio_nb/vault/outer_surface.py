@@ -103,7 +103,7 @@ class OuterSurface:
         return (length - radius) * lean, normals
 
 
-def measure_outer_surface(bone: Volume, centre: Array) -> OuterSurface:
+def measure_outer_surface(bone: Volume, centre: Array, axes: Array | None = None) -> OuterSurface:
     """Measure the outer surface of the vault, smoothed over neighbouring rays, without the edges of holes.
 
     Parameters
@@ -112,13 +112,16 @@ def measure_outer_surface(bone: Volume, centre: Array) -> OuterSurface:
         Bool mask, planes rising to the top of the head.
     centre : ndarray, shape (3,)
         World mm of a point inside the cranial cavity.
+    axes : ndarray, shape (3, 3), optional
+        `Opening.head_axes`; found in the bone when not given.
 
     Returns
     -------
     OuterSurface
     """
+    axes = head_or_grid_axes(bone) if axes is None else axes
     half = int(np.ceil(COMPARED_RAD / _STEP_RAD)) + _RIM + 2
-    grid = RayGrid(np.asarray(centre, float), head_or_grid_axes(bone), _STEP_RAD, 2 * half + 1)
+    grid = RayGrid(np.asarray(centre, float), axes, _STEP_RAD, 2 * half + 1)
     raw, directions = np.full((grid.n, grid.n), np.nan), grid.directions
     inside = grid.polar <= COMPARED_RAD + (_RIM + 1) * _STEP_RAD
     raw[inside] = outermost_edge(bone, grid.centre, directions[inside])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ..errors import InputRefused
 from ..geometry.robust import huber_weights, reweighted_fit, spread
 from ..grid import inside_grid
 from ..opening import Opening
@@ -22,6 +23,8 @@ _LARGEST_DEG = 115.0  # from the map's middle: further out the map tears
 _SOUND = 0.85  # of the usual thickness: bone below it is a bevelled or thinned rim
 _RIM_MM = 6.0  # beside a hole up to which bone may be its rim
 _AROUND_MM = 20.0  # of bone beside the rim that gives the usual thickness
+_FLAT_MM = 1e-3  # across the line of sight: an opening of less is a point
+_LEAST_RAYS = 12  # into a hole, and to bone beside it: some 2 mm across
 
 
 def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
@@ -37,6 +40,11 @@ def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
     -------
     RadiusMap
         Centred on the opening, to about 55 mm beyond it. Its hole is the opening with its bevelled or thinned rim.
+
+    Raises
+    ------
+    InputRefused
+        ``NoHole`` where the opening is no hole with bone around it, seen from the head's centre.
     """
     # a grid that reaches beyond the opening on all sides
     axes = _axes(opening, bone)
@@ -48,8 +56,10 @@ def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
     hole = _rays_to(grid, points)
     typical = float(np.median(np.linalg.norm(points, axis=1)))
     outer, inner = _radii(bone, grid, hole, typical=typical, hidden=hole)
-    step_mm = float(np.nanmedian(outer) * grid.step_rad)
-    return RadiusMap(grid, outer=outer, inner=inner, hole=_missing(outer - inner, hole, step_mm))
+    seen = np.isfinite(outer)
+    hole = _missing(outer - inner, hole, float(np.median(outer[seen]) * grid.step_rad)) if seen.any() else hole
+    _check_hole(grid, hole, seen)
+    return RadiusMap(grid, outer=outer, inner=inner, hole=hole)
 
 
 def measure_along(radius_map: RadiusMap, bone: Volume, *, min_width_mm: float = 4.0) -> RadiusMap:
@@ -78,12 +88,33 @@ def measure_along(radius_map: RadiusMap, bone: Volume, *, min_width_mm: float = 
     return RadiusMap(grid, outer=outer, inner=inner, hole=lacking)
 
 
+def _check_hole(grid: RayGrid, hole: NDArray[np.bool_], seen: NDArray[np.bool_]) -> None:
+    """Refuse an opening that rays do not see as a hole with bone around it."""
+    if hole.sum() < _LEAST_RAYS:
+        problem = "is no hole: the rays through it meet bone, or it is a few voxels"
+    elif (seen & ~hole).sum() < _LEAST_RAYS:
+        problem = "has no bone around it"
+    elif (grid.directions[hole] @ grid.axes[2] <= 0).any():
+        problem = "is wider than half the head"
+    else:
+        return
+    raise _no_hole(problem)
+
+
+def _no_hole(problem: str) -> InputRefused:
+    """The refusal of an opening that is none."""
+    message = f"Seen from inside the head the opening {problem}."
+    return InputRefused("NoHole", message, "Give an opening as `find_openings` finds it; with planes, more of them.")
+
+
 def _axes(opening: Opening, bone: Volume) -> NDArray[np.float64]:
     """Axes of the map: the middle points to the opening, v runs along its long side, u across it."""
     middle = opening.direction
     points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)[::7])
     flat = points - points.mean(axis=0)
     flat = flat - np.outer(flat @ middle, middle)
+    if np.abs(flat).max() < _FLAT_MM:  # the place of the map's axes would hinge on rounding
+        raise _no_hole("is no more than a few voxels")
     long_side = np.linalg.svd(flat, full_matrices=False)[2][0]
     long_side = long_side * (1.0 if long_side @ bone.edges[0] >= 0 else -1.0)
     return np.stack([np.cross(long_side, middle), long_side, middle])

@@ -1,36 +1,21 @@
-"""What to know before a skull is designed on: how the head lies and how thick the slices are -> findings.
+"""What to know of a skull and its openings: how the head lies, how thick the slices are, what is left open -> findings.
 
 Frame: world (mm, LPS).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from ..readers import Finding
-from ..volume import Volume
 from .head_frame import SURE, HeadFrame
+from .opening_choice import JudgedOpening
 
 _ODD_DEG = 60.0  # between the head's top and the end called top, beyond any nod or roll on a head rest
 _OVER_DEG = 120.0
 _THICK_MM = 2.9  # a slice as thick as the vault's thin places is wide: 3 mm, and what is rounded to it
-
-
-def remarks(bone: Volume, frame: HeadFrame) -> tuple[Finding, ...]:
-    """What the bone and its grid show.
-
-    Parameters
-    ----------
-    bone : Volume
-        Bool mask of the skull.
-    frame : HeadFrame
-        How the head lies.
-
-    Returns
-    -------
-    tuple of Finding
-    """
-    return (*orientation_remarks(frame), *thickness_remarks(float(bone.spacing[0])))
 
 
 def orientation_remarks(frame: HeadFrame) -> tuple[Finding, ...]:
@@ -88,3 +73,30 @@ def thickness_remarks(slice_mm: float) -> tuple[Finding, ...]:
         f"and holes narrower than {2 * slice_mm:.0f} mm can be missed. Slices up to 1 mm are best."
     )
     return (Finding("ThickSlices", "warning", message, {"slice_mm": slice_mm}),)
+
+
+def opening_remarks(closed: Sequence[JudgedOpening], left_open: Sequence[JudgedOpening]) -> tuple[Finding, ...]:
+    """What was closed or left open against the verdict, or in doubt.
+
+    Parameters
+    ----------
+    closed, left_open : sequence of JudgedOpening
+        All openings of a skull.
+
+    Returns
+    -------
+    tuple of Finding
+        ``DoubtfulOpening`` (warning) for each doubtful one that is left open, ``ChosenOpening`` (warning) for each that
+        is closed only because it was chosen, ``CutLeftOpen`` (info) for each that was cut and not chosen.
+    """
+    found = []
+    for one in left_open:
+        choose = f" To close it, choose it: --opening {one.number}."
+        if one.verdict.kind == "doubtful":
+            found.append(Finding("DoubtfulOpening", "warning", f"Left open: {one}{choose}", one.record()))
+        if one.verdict.kind == "cut":
+            found.append(Finding("CutLeftOpen", "info", f"Left open, as it was not chosen: {one}", one.record()))
+    for one in closed:
+        if one.verdict.kind != "cut":
+            found.append(Finding("ChosenOpening", "warning", f"Closed, as it was chosen: {one}", one.record()))
+    return tuple(found)

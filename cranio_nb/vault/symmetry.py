@@ -144,7 +144,7 @@ class SymmetryPlane:
         }
 
 
-def find_symmetry_plane(bone: Volume, centre: Array) -> SymmetryPlane:
+def find_symmetry_plane(bone: Volume, centre: Array, axes: Array | None = None) -> SymmetryPlane:
     """Find the symmetry plane of a skull, whole or with holes.
 
     Parameters
@@ -154,6 +154,8 @@ def find_symmetry_plane(bone: Volume, centre: Array) -> SymmetryPlane:
         35 degrees (nodding counts for nothing, as it stays in the plane).
     centre : ndarray, shape (3,)
         World mm of a point inside the cranial cavity.
+    axes : ndarray, shape (3, 3), optional
+        `Opening.head_axes`; found in the bone when not given.
 
     Returns
     -------
@@ -164,8 +166,9 @@ def find_symmetry_plane(bone: Volume, centre: Array) -> SymmetryPlane:
     InputRefused
         ``NoSymmetry`` when too little of the vault has a counterpart on the other side.
     """
-    surface = measure_outer_surface(bone, centre)
+    surface = measure_outer_surface(bone, centre, axes)
     offsets = surface.offsets
+    _check_pairs(len(offsets), surface)  # no more than there are rays that meet bone
     # from the best of many planes, steps until it is still
     normal, shift = _best_start(surface, offsets[::3])
     n_iter, moved = 0, np.inf

@@ -7,18 +7,17 @@ or the top of a thick slice falls below the threshold, bone is still there.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 SURE = 0.5
 """Least confidence of an opening that is designed without being asked for."""
 _TWO_WALLS = 0.5  # share of the rim with deep bone from which an opening is one between the walls of face or base
-_BASE_SHARE, _VAULT_SHARE = (
-    0.1,
-    0.3,
-)  # of an opening above the base: natural up to, cut from; more where the frame is unsure
+_BASE_SHARE, _VAULT_SHARE = 0.1, 0.3  # of an opening above the base: natural up to, cut from
 _ACROSS_MM, _PLAIN_MM = 0.1, 0.8  # of bone in the middle of an opening: what was cut out left none; plainly bone
 _BLURRED_MM = 15.0  # width of a hole into which thick slices blur its rim
 _PAPER_MM, _SMALL_MM = 1.5, 30.0  # a small hole whose rim is as thin as paper was not cut
+_HALF = 0.5  # of an opening above the base: from there on walls behind its rim leave a doubt only
 
 
 @dataclass(frozen=True)
@@ -68,18 +67,96 @@ class Verdict:
     reason: str
 
     @property
-    def designed(self) -> bool:
-        """Whether it is closed without being chosen."""
-        return not self.natural and self.confidence >= SURE
+    def kind(self) -> str:
+        """What follows from it.
 
-    @property
-    def doubtful(self) -> bool:
-        """Whether it is listed and left to the user."""
-        return self.confidence < SURE
+        Returns
+        -------
+        {"cut", "doubtful", "natural"}
+            "cut" is closed without being chosen; "doubtful" is listed as a warning and left to the user; "natural" is
+            listed.
+        """
+        if self.confidence < SURE:
+            return "doubtful"
+        return "natural" if self.natural else "cut"
+
+
+@dataclass(frozen=True)
+class Rule:
+    """One line of the rule by which openings are judged.
+
+    Parameters
+    ----------
+    when : str
+        What an opening shows, in words.
+    holds : callable
+        Whether its signs show that.
+    judge : callable
+        The verdict then.
+    """
+
+    when: str
+    holds: Callable[[Signs], bool]
+    judge: Callable[[Signs], Verdict]
+
+
+RULES = (
+    Rule(
+        f"{_ACROSS_MM:g} to {_PLAIN_MM:g} mm of bone lie across its middle, and it is narrower than {_BLURRED_MM:g} mm",
+        lambda s: _ACROSS_MM <= s.across_mm < _PLAIN_MM and s.diameter_mm < _BLURRED_MM,
+        lambda s: Verdict(
+            True, 0.4, "A trace of bone lies across it: thin bone, or a small hole blurred by the slices."
+        ),
+    ),
+    Rule(
+        f"{_ACROSS_MM:g} mm of bone or more lie across its middle",
+        lambda s: s.across_mm >= _ACROSS_MM,
+        lambda s: Verdict(True, 0.9, "Bone lies across it, too thin for the threshold."),
+    ),
+    Rule(
+        f"it is narrower than {_SMALL_MM:g} mm, and its rim thinner than {_PAPER_MM:g} mm",
+        lambda s: s.diameter_mm < _SMALL_MM and s.rim_mm < _PAPER_MM,
+        lambda s: Verdict(True, 0.7, f"Its rim is {s.rim_mm:.1f} mm thin, as where bone wears away or is blurred."),
+    ),
+    Rule(
+        f"less than {100 * _BASE_SHARE:g} % of it lies above the base of the skull",
+        lambda s: s.on_vault < _BASE_SHARE,
+        lambda s: Verdict(True, 0.5 + 0.5 * s.frame, "It lies at the base of the skull, where natural openings are."),
+    ),
+    Rule(
+        f"behind more than {100 * _TWO_WALLS:g} % of its rim stands another wall, and less than {100 * _HALF:g} % of it"
+        " lies above the base",
+        lambda s: s.two_walls > _TWO_WALLS and s.on_vault < _HALF,
+        lambda s: Verdict(True, 0.8, "It lies between walls one behind the other, as orbits and sinuses do."),
+    ),
+    Rule(
+        f"behind more than {100 * _TWO_WALLS:g} % of its rim stands another wall",
+        lambda s: s.two_walls > _TWO_WALLS,
+        lambda s: Verdict(
+            False, 0.4, "It lies in the vault, but between walls one behind the other, as orbits and sinuses do."
+        ),
+    ),
+    Rule(
+        f"less than {100 * _VAULT_SHARE:g} % of it lies above the base"
+        f" ({150 * _VAULT_SHARE:g} % where nothing shows how the head lies)",
+        lambda s: s.on_vault < _VAULT_SHARE * (1.5 - 0.5 * s.frame),
+        lambda s: Verdict(False, 0.45, "Most of it lies at the base of the skull."),
+    ),
+    Rule(
+        "none of these: it is soft all through, in the vault, and has a single wall around it",
+        lambda s: True,
+        lambda s: Verdict(
+            False,
+            0.6 + 0.4 * min(s.on_vault, s.frame),
+            "Soft all through, in the vault, with a single wall around it.",
+        ),
+    ),
+)
+"""The rule: the first line that holds decides."""
 
 
 def judge(signs: Signs) -> Verdict:
-    """Judge one opening.
+    """Judge one opening by the first of the `RULES` that holds.
 
     Parameters
     ----------
@@ -91,31 +168,26 @@ def judge(signs: Signs) -> Verdict:
 
     Examples
     --------
-    >>> judge(Signs(60.0, 0.0, on_vault=1.0, two_walls=0.0, rim_mm=6.0, frame=1.0)).designed
-    True
+    >>> judge(Signs(60.0, 0.0, on_vault=1.0, two_walls=0.0, rim_mm=6.0, frame=1.0)).kind
+    'cut'
     >>> judge(Signs(20.0, 1.0, on_vault=1.0, two_walls=0.0, rim_mm=2.0, frame=1.0)).reason
     'Bone lies across it, too thin for the threshold.'
     """
-    if signs.across_mm >= _ACROSS_MM:
-        if signs.diameter_mm < _BLURRED_MM and signs.across_mm < _PLAIN_MM:
-            return Verdict(
-                True, 0.4, "A trace of bone lies across it: thin bone, or a small hole blurred by the slices."
-            )
-        return Verdict(True, 0.9, "Bone lies across it, too thin for the threshold.")
-    if signs.diameter_mm < _SMALL_MM and signs.rim_mm < _PAPER_MM:
-        return Verdict(True, 0.7, f"Its rim is {signs.rim_mm:.1f} mm thin, as where bone wears away or is blurred.")
-    if signs.on_vault < _BASE_SHARE:
-        return Verdict(True, 0.5 + 0.5 * signs.frame, "It lies at the base of the skull, where natural openings are.")
-    if signs.two_walls > _TWO_WALLS and signs.on_vault < 0.5:
-        return Verdict(True, 0.8, "It lies between walls one behind the other, as orbits and sinuses do.")
-    if signs.two_walls > _TWO_WALLS:
-        return Verdict(
-            False, 0.4, "It lies in the vault, but between walls one behind the other, as orbits and sinuses do."
-        )
-    if signs.on_vault < _VAULT_SHARE * (1.5 - 0.5 * signs.frame):
-        return Verdict(False, 0.45, "Most of it lies at the base of the skull.")
-    return Verdict(
-        False,
-        0.6 + 0.4 * min(signs.on_vault, signs.frame),
-        "Soft all through, in the vault, with a single wall around it.",
-    )
+    return next(rule for rule in RULES if rule.holds(signs)).judge(signs)
+
+
+def rule_rows() -> list[tuple[str, str, str]]:
+    """The rule as a table.
+
+    Returns
+    -------
+    list of tuple of str
+        For each of the `RULES`: when it holds, the kind of opening that follows, and the confidence, which is a range
+        where it grows with the share above the base and with how surely it is known how the head lies.
+    """
+    rows = []
+    for rule in RULES:
+        low, high = (rule.judge(Signs(0.0, 0.0, on_vault=x, two_walls=0.0, rim_mm=0.0, frame=x)) for x in (0.0, 1.0))
+        ends = dict.fromkeys(f"{verdict.confidence:.2f}" for verdict in (low, high))
+        rows.append((rule.when, high.kind, " to ".join(ends)))
+    return rows

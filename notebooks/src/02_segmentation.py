@@ -16,7 +16,8 @@
 # **After this lesson you can**
 # - choose a threshold and say what it does to the thickness of the bone;
 # - fill small holes without filling the head;
-# - keep the skull and drop what is not part of it.
+# - keep the skull and drop what is not part of it;
+# - say how a hole that was cut is told from one that is natural, and why that needs the HU.
 #
 # **Time:** 40 minutes (text 15, questions 10, exercises 15). **You need:** lesson 01.
 #
@@ -30,6 +31,7 @@ from scipy import ndimage
 import cranio_nb as cn
 from cranio_nb.stages import segmentation, surface_reconstruction
 from cranio_nb.teaching import check, classroom, pictures, widgets
+from cranio_nb.vault import verdict
 
 # %% [markdown]
 # ## Parameters
@@ -174,6 +176,52 @@ parts = ndimage.label(bright)[1]
 pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} after")
 
 # %% [markdown]
+# ## 5. Which hole was cut?
+#
+# A mask has more holes than the surgeon made: orbits, nose and foramina at the base, and places where bone is so thin
+# that its HU stay under the threshold. A prosthesis for such a hole would be worse than none. So each opening gets a
+# **verdict**: *cut*, *natural*, or *doubtful* where the signs do not suffice, with a **confidence** between 0 and 1 and
+# a reason. What was cut is closed; doubtful ones are listed and left to you (`--opening N` on the command line, with
+# the number of the list). The signs are taken in the head's own frame, found from the bone, so that it does not matter
+# how the head lies. This is the whole rule; the first line that holds decides:
+
+# %% tags=["nbval-check-output"]
+for number, (when, kind, confidence) in enumerate(verdict.rule_rows(), 1):
+    print(f"{number}. {when}\n   -> {kind}, confidence {confidence}")
+
+# %% [markdown]
+# The openings of this head, as `cranio-nb inspect` lists them:
+
+# %% tags=["nbval-check-output"]
+for one in cn.survey_openings(masks[2], scan=ct):
+    print(one)
+
+# %% [markdown]
+# **Predict.** We fill the missing bone with thin bone: HU above those of soft tissue, but below the threshold. The mask
+# has the same hole as before. What does the verdict say of it, from the mask alone, and with the HU?
+
+# %% tags=["nbval-check-output"]
+if case.truth is not None:
+    blurred = ct.voxels.copy()
+    blurred[case.truth.voxels] = 0.75 * levels[2]
+    thin = ct.with_voxels(blurred)
+    bone = cn.segment(thin)
+    for words, scan in (("mask alone", None), ("with the HU", thin)):
+        (one,) = cn.survey_openings(bone, scan=scan)
+        print(
+            f"{words}: {one.verdict.kind}, confidence {one.verdict.confidence:.2f}. {one.verdict.reason}"
+        )
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
+#
+# From the mask alone it was cut: a hole in the vault with a single wall around it. The HU show the bone. Its thickness
+# across the hole is the excess of the HU over those of the brain, summed along a ray and divided by the excess of solid
+# bone: partial volume, as in section 2, used the other way round. So give the scan wherever you have it.
+#
+# </details>
+#
 # ## Exercises
 #
 # **Exercise 2.1.** Keep the largest connected part of a mask of three dimensions. Voxels are connected over faces, as
@@ -226,6 +274,7 @@ pictures.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")
 #
 # - The threshold sets the thickness (partial volume) and whether the diploe stays.
 # - Fill holes by size, never all of them. Drop parts that are not connected to the skull.
+# - A hole in the mask need not be one in the bone. Each opening has a verdict, with its confidence and reason.
 #
 # | paper | code | unit |
 # |---|---|---|
@@ -233,6 +282,7 @@ pictures.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")
 # | hole filling | `segmentation.fill_holes` | px |
 # | search process for artifacts | `segmentation.drop_artefacts` | |
 # | binary volume | `cn.segment` -> `Volume` of bool | |
+# | (ours) natural, cut or doubtful | `cn.survey_openings`, `vault.verdict.RULES` | mm, shares |
 #
 # **Further reading.** Otsu, *A threshold selection method from gray-level histograms* (1979). Gonzalez and Woods,
 # *Digital Image Processing*, the chapter on morphology.

@@ -12,7 +12,7 @@ def test_demo_can_be_run_twice_but_never_replaces_a_strangers_series(paper, tmp_
         assert result.exit_code == 0, result.output
         monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
     assert {p.name for p in out.iterdir()} == OUTPUTS | {"ct", "truth.nii.gz", "truth.json"}
-    assert len(list((out / "ct").iterdir())) == 44
+    assert len(list((out / "ct").iterdir())) == 54
     (out / "ct" / "mine.dcm").write_text("one more slice")
     before = digest(out)
     assert_refused(cranio("demo", "--size", "tiny", "--out", out), 5)

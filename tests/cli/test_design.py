@@ -1,6 +1,7 @@
 """The command `design`: what it writes, what it refuses, what it leaves alone."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import nibabel
@@ -14,9 +15,12 @@ from cli_runs import OUTPUTS, assert_refused, cranio, digest
 from cranio_nb.output import design_folder
 from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.pipeline import preparation, run
+from cranio_nb.pipeline import survey as pipeline_survey
 from cranio_nb.readers import read_ct
+from cranio_nb.vault import opening_search
+from cranio_nb.vault.verdict import Verdict, rule_rows
 from cranio_nb.volume import Volume
-from data_synth import Case, write_dicom
+from data_synth import Case, phantom_case, write_dicom
 
 FLIP = np.diag([-1.0, -1.0, 1.0, 1.0])
 
@@ -43,7 +47,7 @@ def test_design_json_is_closed_strict_and_true(done, case):
     assert set(record) == {
         *("cranio_nb", "not_for_clinical_use", "world", "load", "bone_threshold_hu", "openings", "method", "preset"),
         *("parameters", "slices", "slice_counts", "balloons", "findings", "measures", "mesh", "implant", "seconds"),
-        "versions",
+        *("left_open", "versions"),
     }
     assert record["world"] == "DICOM LPS, mm" and record["not_for_clinical_use"] is True
     assert record["load"]["source"] == "DICOM" and record["load"]["shape"] == list(case.bone.shape)
@@ -187,7 +191,7 @@ def test_planes_without_an_opening(home, tmp_path):
 
 def test_truth_on_another_grid_is_refused_before_any_work(case, home, tmp_path, monkeypatch):
     write_nifti(Volume(case.implant[:-1], case.affine), tmp_path / "truth.nii.gz")
-    monkeypatch.setattr(preparation, "bone_of", lambda *a: pytest.fail("work was done"))
+    monkeypatch.setattr(preparation, "survey_scan", lambda *a: pytest.fail("work was done"))
     arguments = ("--truth", tmp_path / "truth.nii.gz", "--out", tmp_path / "out")
     assert_refused(cranio("design", home / "ct", *arguments), 3, "truth")
     assert not (tmp_path / "out").exists()
@@ -258,3 +262,82 @@ def test_dry_skull_with_a_hole(real_data, tmp_path):
     assert result.exit_code == 0, result.output
     measures = json.loads((tmp_path / "out" / "design.json").read_text())["measures"]
     assert measures["score"]["dice"] > 0.8 and measures["score"]["overlap"] == 0
+
+
+@pytest.fixture(scope="module")
+def doubted(tmp_path_factory):
+    """A head with a hole at each side, and one more that a trace of bone makes doubtful."""
+    case, folder = phantom_case("tiny", "multiple", 0), tmp_path_factory.mktemp("doubted")
+    write_nifti(Volume(case.bone, case.affine), folder / "skull.nii.gz")
+    return folder / "skull.nii.gz"
+
+
+def doubt_the_smallest(monkeypatch):
+    """Every opening but the two largest is in doubt."""
+
+    def survey(*args, real=opening_search.survey_openings, **options):
+        found = real(*args, **options)
+        doubt = Verdict(False, 0.4, "It is in doubt.")
+        return (*found[:2], *(replace(one, verdict=doubt) for one in found[2:]))
+
+    monkeypatch.setattr(pipeline_survey, "survey_openings", survey)
+
+
+def test_a_doubtful_opening_is_left_open_and_listed_everywhere(doubted, tmp_path, monkeypatch):
+    doubt_the_smallest(monkeypatch)
+    looked = json.loads(cranio("inspect", doubted, "--json").stdout)
+    assert [one["number"] for one in looked["openings"]] == [1, 2]
+    (listed,) = looked["left_open"]
+    assert listed["number"] == 3 and listed["kind"] == "doubtful" and listed["confidence"] == 0.4
+    table = cranio("inspect", doubted).stdout
+    assert "doubtful (0.40)" in table and "cut (" in table
+    result = cranio("design", doubted, "--method", "hull", "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    record = json.loads((tmp_path / "out" / "design.json").read_text())
+    assert record["openings"] == looked["openings"] and record["left_open"] == [listed]
+    (finding,) = [one for one in record["findings"] if one["code"] == "DoubtfulOpening"]
+    page = (tmp_path / "out" / "report.html").read_text()
+    for text in (finding["message"], result.stdout, page):
+        for part in ("pening 3", listed["place"], "confidence 0.40", "It is in doubt.", "--opening 3"):
+            assert part in text
+    assert "How openings are judged" in page and all(row[0].split(",")[0] in page for row in rule_rows())
+
+
+def test_a_doubtful_opening_is_closed_when_it_is_chosen(doubted, tmp_path, monkeypatch):
+    doubt_the_smallest(monkeypatch)
+    result = cranio("design", doubted, "--method", "hull", "--opening", 3, "--out", tmp_path / "out")
+    assert result.exit_code == 0, result.output
+    record = json.loads((tmp_path / "out" / "design.json").read_text())
+    assert [one["number"] for one in record["openings"]] == [3]
+    assert [one["number"] for one in record["left_open"]] == [1, 2]
+    assert {"ChosenOpening", "CutLeftOpen"} <= {one["code"] for one in record["findings"]}
+    # where it is, and nowhere else
+    closed = read_ct(tmp_path / "out" / "patch.nii.gz", mask=True)[0]
+    middle = closed.to_world(np.argwhere(closed.voxels).mean(axis=0))
+    assert np.linalg.norm(middle - record["openings"][0]["centre"]) < 5.0
+    both = cranio("design", doubted, "--method", "hull", "--opening", 3, "--opening", 1, "--out", tmp_path / "two")
+    assert both.exit_code == 0
+    record = json.loads((tmp_path / "two" / "design.json").read_text())
+    assert [one["number"] for one in record["openings"]] == [1, 3]
+
+
+@pytest.mark.parametrize("command", [("design", "--method", "hull", "--out", "OUT"), ("compare", "--method", "hull")])
+def test_a_number_that_no_opening_has_is_refused_with_the_list(command, doubted, tmp_path):
+    name, *rest = [tmp_path / "out" if word == "OUT" else word for word in command]
+    result = cranio(name, doubted, *rest, "--opening", 4)
+    assert result.exit_code == 2 and not (tmp_path / "out").exists()
+    for part in ("--opening", "no opening 4", "Opening 1 (", "Opening 2 (", "Opening 3 ("):
+        assert part in result.stderr
+    assert cranio(name, doubted, *rest, "--opening", 0).exit_code == 2
+
+
+def test_only_doubtful_openings_are_listed_in_the_refusal(doubted, tmp_path, monkeypatch):
+    doubt = Verdict(False, 0.4, "It is in doubt.")
+    real = opening_search.survey_openings
+    monkeypatch.setattr(
+        pipeline_survey, "survey_openings", lambda *a, **o: tuple(replace(one, verdict=doubt) for one in real(*a, **o))
+    )
+    for command in (("inspect", doubted), ("design", doubted, "--out", tmp_path / "out")):
+        result = cranio(*command)
+        assert result.exit_code == 4 and "--opening 1" in result.stderr
+        assert all(f"pening {n} (" in result.stderr for n in (1, 2, 3))

@@ -58,7 +58,7 @@ def no_work(monkeypatch):
         (phantom, "_cut", lambda *a: Made()),
         (study, "read_intact_skulls", lambda *a, **k: ()),
         (learning, "learn_prior", lambda *a: Made()),
-        (prior_file, "save_prior", lambda made, path: path.write_text("new")),
+        (prior_file, "pack_prior", lambda made: b"new"),
     ):
         monkeypatch.setattr(module, name, stand_in)
 

@@ -7,7 +7,7 @@ from click.testing import CliRunner
 
 from cranio_nb.cli.main import main
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.prior.file import load_prior, save_prior
+from cranio_nb.prior.file import load_prior, pack_prior
 
 
 def test_a_folder_without_skulls_is_refused_and_nothing_is_written(tmp_path):
@@ -36,7 +36,7 @@ def test_the_command_learns_from_a_folder(intact, skull, tmp_path):
 
 
 def test_the_command_takes_a_prior_for_the_plate_only(learned, skull, tmp_path):
-    save_prior(learned, tmp_path / "prior.npz")
+    (tmp_path / "prior.npz").write_bytes(pack_prior(learned))
     write_nifti(skull("burr_hole"), tmp_path / "skull.nii.gz")
     wanted = ["design", str(tmp_path / "skull.nii.gz"), "--mask", "--prior", str(tmp_path / "prior.npz")]
     made = CliRunner().invoke(main, [*wanted, "--method", "thin-plate", "--out", str(tmp_path / "out")])

@@ -1,12 +1,18 @@
 """The live scene answers to its own page only: five probes of a running scene, and the headers of its answers."""
 
 import asyncio
+import os
+import socket
 import subprocess
 import sys
+from contextlib import ExitStack
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from cranio_nb.drawing.local_server import HEADERS, is_local_request
+from cranio_nb.drawing import local_server
+from cranio_nb.drawing.local_server import HEADERS, MAX_MESSAGE, MAX_SOCKETS, is_local_request
 
 SCENE = """
 import asyncio, os, sys
@@ -30,8 +36,8 @@ asyncio.run(kernel())
 
 
 @pytest.fixture(scope="module")
-def scene():
-    """Port and key of a scene in a process of its own, whose loop runs as a kernel's does."""
+def running():
+    """Process, port and key of a scene in a process of its own, whose loop runs as a kernel's does."""
     pytest.importorskip("trame_pyvista")
     pytest.importorskip("ipywidgets")
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE}
@@ -39,9 +45,15 @@ def scene():
         first, second = kernel.stdout.readline().split()
         address, _, key = first.partition("&secret=")
         assert second.endswith(f"&secret={key}") and address.startswith("http://localhost:")
-        yield int(address.split(":")[2].split("/")[0]), key
+        yield kernel.pid, int(address.split(":")[2].split("/")[0]), key
         kernel.stdin.close()
         assert kernel.stdout.readline().strip() == "CANARY", "the state was changed"
+
+
+@pytest.fixture
+def scene(running):
+    """Port and key."""
+    return running[1:]
 
 
 async def call(socket, method, *arguments, number=1):
@@ -163,3 +175,119 @@ def test_every_answer_is_marked(scene):
 def test_odd_headers_are_refused(hosts, origins, socket):
     assert not is_local_request(hosts, origins, 1, socket=socket)
     assert is_local_request(["localhost:1"], [], 1, socket=False)
+
+
+def works(port, key):
+    """Whether the user's own page is answered."""
+    status, hello, state = login(port, HERE, LOCAL, key)
+    return status == 200 and "clientID" in hello["result"] and "CANARY" in str(state["result"])
+
+
+def memory_mb(pid):
+    """Resident memory of a process at its highest."""
+    status = Path(f"/proc/{pid}/status")
+    if not status.exists():
+        pytest.skip("the system does not tell the memory of a process")
+    return int(status.read_text().split("VmHWM:")[1].split()[0]) / 1000
+
+
+def test_many_connections_neither_stop_it_nor_stay(running):
+    """With CRANIO_NB_CONNECTIONS=5000 as many as the acceptance asks for."""
+    pid, port, key = running
+    before = memory_mb(pid)
+    with ExitStack() as stack:
+        for _ in range(int(os.environ.get("CRANIO_NB_CONNECTIONS", "200"))):
+            stack.enter_context(socket.create_connection(("127.0.0.1", port)))
+        assert works(port, key)
+    assert works(port, key)
+    assert memory_mb(pid) - before < 200
+
+
+def ours(port):
+    """Headers of the own page."""
+    return {"Host": HERE.format(port), "Origin": LOCAL.format(port)}
+
+
+def test_sockets_are_so_many_at_one_time(running):
+    aiohttp = pytest.importorskip("aiohttp")
+    _, port, key = running
+
+    async def fill():
+        url = f"ws://127.0.0.1:{port}/ws"
+        async with aiohttp.ClientSession(connector=aiohttp.TCPConnector(limit=0)) as session:
+            held = [await session.ws_connect(url, headers=ours(port)) for _ in range(MAX_SOCKETS)]
+            with pytest.raises(aiohttp.WSServerHandshakeError) as refused:
+                await session.ws_connect(url, headers=ours(port))
+            assert refused.value.status == 503
+            await held[0].close()
+            await (await session.ws_connect(url, headers=ours(port))).close()
+            await asyncio.gather(*(one.close() for one in held))
+
+    asyncio.run(fill())
+    assert works(port, key)
+
+
+def begun(number, size):
+    """The start of a message of so many bytes."""
+    return number.to_bytes(4, "little") + bytes(4) + size.to_bytes(4, "little") + b"x"
+
+
+FRAMES = {
+    "10 MB of text": ("text", ["a" * 10_000_000]),
+    "text": ("text", ["{}"]),
+    "10 MB of bytes": ("bytes", [bytes(10_000_000)]),
+    "a message of 1.6 GB, begun": ("bytes", [begun(1, 1_600_000_000)]),
+    "a message over the limit, begun": ("bytes", [begun(1, MAX_MESSAGE + 1)]),
+    "many messages, begun": ("bytes", [begun(i, 400) for i in range(5000)]),
+}
+
+
+@pytest.mark.parametrize("secret", [False, True], ids=["without the key", "with the key"])
+@pytest.mark.parametrize("name", FRAMES)
+def test_frames_that_are_too_large_close_their_socket(name, secret, running):
+    aiohttp = pytest.importorskip("aiohttp")
+    pid, port, key = running
+    kind, frames = FRAMES[name]
+    before = memory_mb(pid)
+
+    async def send():
+        async with aiohttp.ClientSession() as session:
+            async with session.ws_connect(f"ws://127.0.0.1:{port}/ws", headers=ours(port)) as page:
+                if secret:
+                    assert "clientID" in (await call(page, "wslink.hello", {"secret": key}))["result"]
+                try:
+                    for frame in frames:
+                        await (page.send_str(frame) if kind == "text" else page.send_bytes(frame))
+                except ConnectionError:
+                    return None  # closed while it was sent
+                while (got := await asyncio.wait_for(page.receive(), 20)).type is aiohttp.WSMsgType.BINARY:
+                    pass
+                return got.data
+
+    assert asyncio.run(send()) in (1008, 1009, None)
+    assert works(port, key)
+    assert memory_mb(pid) - before < 150
+
+
+@pytest.mark.parametrize("known", [False, True])
+def test_who_does_not_show_the_key_in_time_is_closed(known, monkeypatch):
+    """A stand-in for the sockets of a server, and no time to wait."""
+    monkeypatch.setattr(local_server, "_SECONDS_TO_LOGIN", 0.0)
+    closed = []
+
+    class Page:
+        async def close(self, code):
+            closed.append(code)
+
+    async def connected():
+        async def nothing(*_):
+            return None
+
+        sockets = SimpleNamespace(onConnect=nothing, onMessage=nothing, connections={"c": Page()})
+        sockets.authentified_client_ids = {"c"} if known else set()
+        local_server._bound_messages(sockets)
+        await sockets.onConnect(None, "c")
+        await asyncio.gather(*(asyncio.all_tasks() - {asyncio.current_task()}))
+
+    asyncio.run(connected())
+    assert closed == ([] if known else [1008])

@@ -2,6 +2,7 @@
 
 import sys
 from importlib.metadata import EntryPoint
+from typing import Annotated
 
 import numpy as np
 import pytest
@@ -9,8 +10,9 @@ from scipy import ndimage
 
 import cranio_nb as cn
 from cranio_nb.errors import InputRefused, NoOpening
-from cranio_nb.methods import catalogue
+from cranio_nb.methods import catalogue, transfer
 from cranio_nb.methods.piece import Piece
+from cranio_nb.option import Option
 
 
 def toy(bone, openings, *, grow_px=2):
@@ -193,3 +195,34 @@ def test_kinds_of_values(value, default, fits):
                 catalogue.check_options("mine", {"x": value})
     finally:
         catalogue.remove_method("mine")
+
+
+def ranged(bone, openings, *, grow_px: 'Annotated[int, Option("How far.", 1, 5, "px")]' = 2):
+    yield from ()
+
+
+def test_an_own_method_declares_ranges_and_keeps_them_in_another_process():
+    cn.add_method("mine", ranged)
+    try:
+        packed = transfer.pack_methods()
+        catalogue.remove_method("mine")
+        transfer.unpack_methods(packed)
+        assert catalogue.options_of("mine")["grow_px"].limits == "1 to 5 px"
+        with pytest.raises(InputRefused, match="from 1 to 5 px"):
+            catalogue.check_options("mine", {"grow_px": 6})
+    finally:
+        catalogue.remove_method("mine")
+
+
+def off(bone, openings, *, grow_px: Annotated[int, Option("How far.", 1, 5, "px")] = 9):
+    yield from ()
+
+
+def lost(bone, openings, *, grow_px: "Annotated[Nowhere, Option('How far.')]" = 9):  # noqa: F821
+    yield from ()
+
+
+@pytest.mark.parametrize(("pieces", "said"), [(off, "default of grow_px"), (lost, "Nowhere")])
+def test_a_declaration_that_cannot_hold_is_refused(pieces, said):
+    with pytest.raises(InputRefused, match=said):
+        cn.add_method("mine", pieces)

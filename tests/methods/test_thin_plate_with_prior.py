@@ -6,12 +6,12 @@ from scipy import ndimage
 from cranio_nb.methods import thin_plate
 from cranio_nb.methods.design import design
 from cranio_nb.prior.around_opening import Prediction
-from cranio_nb.prior.file import save_prior
+from cranio_nb.prior.file import pack_prior
 
 
 def test_a_prior_draws_the_plate_towards_what_skulls_predict_but_not_off_the_rim(learned, skull, tmp_path):
     bone = skull("unilateral")
-    save_prior(learned, tmp_path / "prior.npz")
+    (tmp_path / "prior.npz").write_bytes(pack_prior(learned))
     (alone,) = design(bone, method="thin-plate").working
     made = design(bone, method="thin-plate", prior=str(tmp_path / "prior.npz"))
     (plate,) = made.working
@@ -28,7 +28,7 @@ def test_a_prior_draws_the_plate_towards_what_skulls_predict_but_not_off_the_rim
 
 def test_a_prior_that_does_not_reach_the_hole_changes_nothing(learned, skull, tmp_path, monkeypatch):
     bone = skull("burr_hole")
-    save_prior(learned, tmp_path / "prior.npz")
+    (tmp_path / "prior.npz").write_bytes(pack_prior(learned))
 
     def nowhere(prior, bone, radius_map):
         nothing = np.full(radius_map.hole.shape, np.nan)

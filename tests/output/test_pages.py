@@ -6,8 +6,8 @@ import pytest
 from jinja2 import UndefinedError
 
 from cranio_nb.drawing import figures
-from cranio_nb.evaluation.opening_size import measure_opening
 from cranio_nb.output import pages
+from cranio_nb.vault.opening_size import measure_opening
 
 
 @pytest.mark.parametrize(("value", "text"), [(None, "-"), (3, "3"), (2.5, "2.50"), (True, "True"), ("x", "x")])

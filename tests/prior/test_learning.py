@@ -18,8 +18,16 @@ def test_learned_heads_are_symmetric_and_of_mean_size(learned):
 
 def test_an_open_skull_is_not_learned_from(skull, intact):
     check_intact(intact(0))
-    with pytest.raises(InputRefused, match="open or outside"):
+    with pytest.raises(InputRefused, match="not intact") as refused:
         check_intact(skull("large", 0))
+    assert refused.value.code == "NotIntact"
+
+
+def test_half_a_head_is_not_learned_from(intact):
+    whole = intact(0)
+    with pytest.raises(InputRefused, match="outside the image") as refused:
+        check_intact(whole.crop((slice(whole.shape[0] // 2, None), slice(None), slice(None))))
+    assert refused.value.code == "VaultLeavesImage"
 
 
 def test_one_skull_is_too_few(intact):

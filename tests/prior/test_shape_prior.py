@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cranio_nb.prior.head_frame import mirror_index
+from cranio_nb.prior.mean_frame import mirror_index
 from cranio_nb.prior.shape_prior import Prior, conditional_mean
 from cranio_nb.prior.vault_radii import distance_mm, mirror_radii, vault_rays
 

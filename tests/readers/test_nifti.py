@@ -44,6 +44,25 @@ def test_other_kinds_of_voxels_are_refused(tmp_path: Path) -> None:
     assert file_refusal(write_nifti(tmp_path / "b.nii", colours, lps)).code == "UnsupportedPixels"
 
 
+@pytest.mark.parametrize("slope", [1e20, -1e30, 2.0**53, 3e38])
+@pytest.mark.parametrize("kind", ["i2", "i4", "u1"])
+def test_huge_scalings_are_no_hu(slope: float, kind: str, tmp_path: Path) -> None:
+    """Whole numbers beyond the range of integers neither fail nor wrap around into it."""
+    voxels, lps = stored_head()
+    path = write_nifti(tmp_path / "a.nii", (voxels.clip(-128, 127) & 127).astype(kind), lps)
+    patch_header(path, scl_slope=slope, scl_inter=slope)
+    assert "no CT holds such" in str(file_refusal(path))
+
+
+def test_unknown_codes_of_voxels_and_offsets_of_no_number_are_refused(tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    for change in ({"datatype": 102}, {"datatype": -7}, {"vox_offset": np.nan}, {"vox_offset": np.inf}):
+        path = write_nifti(tmp_path / "a.nii", voxels, lps)
+        patch_header(path, **change)
+        error = file_refusal(path)
+        assert error.code == "CorruptFile" and "NIfTI file is damaged" in str(error)
+
+
 def test_pixdim_of_zero_is_refused(tmp_path: Path) -> None:
     voxels, lps = stored_head()
     path = write_nifti(tmp_path / "a.nii", voxels, lps)

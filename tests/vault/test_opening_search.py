@@ -7,8 +7,7 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused, NoOpening
-from cranio_nb.vault.opening_search import find_openings, measure_outermost_bone
-from cranio_nb.vault.orientation import head_axes
+from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import DEFECTS, scan
 
@@ -90,7 +89,7 @@ def test_an_opening_that_leaves_the_image_is_refused(defect, axis, keep, phantom
     middle = int(hit[0] + hit[-1]) // 2
     box = [slice(None)] * 3
     box[axis] = slice(middle) if keep == "low" else slice(middle, None)
-    with pytest.raises(InputRefused, match="edge of the image") as refused:
+    with pytest.raises(InputRefused, match="outside the image") as refused:
         find_openings(skull(defect).crop(tuple(box)))
     assert refused.value.code == "OpeningLeavesImage"
 
@@ -175,16 +174,6 @@ def test_openings_narrower_than_asked_for_are_not_openings(skull):
     assert len(find_openings(bone, min_diameter_mm=6.0)) == 1
     with pytest.raises(NoOpening):
         find_openings(bone, min_diameter_mm=25.0)
-
-
-def test_the_outermost_bone_is_the_outer_skull(phantom, skull):
-    case, found = phantom("unilateral"), measure_outermost_bone(skull("unilateral"), head_axes(skull("unilateral")))
-    np.testing.assert_allclose(np.linalg.norm(found.grid.directions, axis=-1), 1, atol=1e-12)
-    known = np.isfinite(found.radius) & found.within(60)
-    p = found.grid.points(found.radius)[known] - case.head.centre
-    away = np.linalg.norm(p, axis=1)
-    off = away - case.head.outer_radius(p / away[:, None])
-    assert abs(np.median(off)) < 1.5 and np.percentile(np.abs(off), 95) < 3.0  # a voxel
 
 
 def test_the_bone_is_not_modified(phantom, skull):

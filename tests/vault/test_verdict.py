@@ -1,45 +1,52 @@
-"""Verdicts on openings."""
+"""Verdicts on openings: the rule's lines one by one."""
 
 from dataclasses import replace
 
 import pytest
 
-from cranio_nb.vault.verdict import Signs, judge
+from cranio_nb.vault.verdict import RULES, SURE, Signs, judge, rule_rows
 
 CUT = Signs(60.0, 0.0, on_vault=1.0, two_walls=0.0, rim_mm=6.0, frame=1.0)
+BY_LINE = [  # signs for which each line of the rule is the first to hold, and what follows
+    (replace(CUT, across_mm=0.3, diameter_mm=9.0), "doubtful"),
+    (replace(CUT, across_mm=1.0), "natural"),
+    (replace(CUT, rim_mm=1.0, diameter_mm=12.0), "natural"),
+    (replace(CUT, on_vault=0.0), "natural"),
+    (replace(CUT, two_walls=0.9, on_vault=0.4), "natural"),
+    (replace(CUT, two_walls=0.9), "doubtful"),
+    (replace(CUT, on_vault=0.2), "doubtful"),
+    (CUT, "cut"),
+]
 
 
-def test_a_plain_craniectomy_is_designed():
-    verdict = judge(CUT)
-    assert verdict.designed and not verdict.natural and not verdict.doubtful and verdict.confidence == 1
+@pytest.mark.parametrize(("line", "signs", "kind"), [(i, *one) for i, one in enumerate(BY_LINE)])
+def test_the_first_line_that_holds_decides(line, signs, kind):
+    assert [rule.holds(signs) for rule in RULES].index(True) == line
+    verdict = judge(signs)
+    assert verdict.kind == kind and verdict == RULES[line].judge(signs)
+    assert (verdict.confidence < SURE) == (kind == "doubtful")
+    assert verdict.reason.endswith(".")
 
 
-@pytest.mark.parametrize(
-    "signs",
-    [
-        replace(CUT, across_mm=1.0),
-        replace(CUT, across_mm=0.3, diameter_mm=9.0),
-        replace(CUT, rim_mm=1.0, diameter_mm=12.0),
-        replace(CUT, on_vault=0.0),
-        replace(CUT, on_vault=0.2),
-        replace(CUT, two_walls=0.9),
-        replace(CUT, two_walls=0.9, on_vault=0.4),
-    ],
-)
-def test_what_is_natural_or_doubtful_is_not_designed(signs):
-    assert not judge(signs).designed
-    assert judge(signs).reason.endswith(".")
+def test_the_table_names_every_line_with_its_kind_and_confidence():
+    rows = rule_rows()
+    assert len(BY_LINE) == len(RULES) == len(rows)
+    for (signs, kind), (when, said, confidence) in zip(BY_LINE, rows, strict=True):
+        low, *high = (float(text) for text in confidence.split(" to "))
+        assert when and said == kind
+        # the table gives two decimals
+        assert low - 0.005 <= judge(signs).confidence <= max(high, default=low) + 0.005
 
 
-def test_a_trace_of_bone_across_a_small_hole_is_a_doubt():
-    assert judge(replace(CUT, across_mm=0.3, diameter_mm=9.0)).doubtful
+def test_a_plain_craniectomy_is_sure():
+    assert judge(CUT).confidence == 1 and not judge(CUT).natural
 
 
 def test_the_less_sure_the_frame_the_more_must_lie_on_the_vault():
     low = replace(CUT, on_vault=0.4)
-    assert judge(low).designed and not judge(replace(low, frame=0.0)).designed
+    assert judge(low).kind == "cut" and judge(replace(low, frame=0.0)).kind == "doubtful"
 
 
 def test_confidence_grows_with_the_vault_and_the_frame():
     values = [judge(replace(CUT, on_vault=v, frame=f)).confidence for v, f in [(0.5, 0.2), (0.5, 0.5), (0.9, 0.9)]]
-    assert values == sorted(values)
+    assert values == sorted(values) and values[0] < values[-1]

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ from scipy import ndimage
 
 from ...geometry import voxel_pieces
 from ...opening import Opening
+from ...option import Option
 from ...vault import radius_measurement, radius_voxels
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
@@ -75,12 +76,17 @@ def pieces(
     bone: Volume,
     openings: Sequence[Opening],
     *,
-    wavelength_mm: float = 20.0,
-    tension_mm2: float = 0.0,
-    span_mm: float = 8.0,
-    free_weights: bool = False,
-    tol_mm: float = 1e-2,
-    max_iter: int = 40,
+    # shorter waves than 5 mm are the scan's stairs; a stiffer sheet than at 80 mm no longer follows the bone
+    wavelength_mm: Annotated[float, Option("Ripples of the bone of this length are halved.", 5, 80, "mm")] = 20.0,
+    # at 1000 tension smooths over sqrt(1000) = 30 mm: a membrane
+    tension_mm2: Annotated[float, Option("0 for a plate, more for a membrane.", 0, 1000, "mm2")] = 0.0,
+    # 4 mm: thousands of control points; 40 mm: the four spans that a sheet has at least
+    span_mm: Annotated[float, Option("Between the knots of the sheets.", 4, 40, "mm")] = 8.0,
+    free_weights: Annotated[bool, Option("Whether the weights move too.")] = False,
+    # below 1e-6 rounding moves a sheet; one that may still move 1 mm a step is not at rest
+    tol_mm: Annotated[float, Option("Way of a control point in a step at which a sheet rests.", 1e-6, 1, "mm")] = 1e-2,
+    # a step takes seconds: it solves for all control points and weights
+    max_iter: Annotated[int, Option("Steps at most, with free weights.", 1, 40)] = 40,
 ) -> Iterator[Piece]:
     """Close each opening between two elastic sheets.
 

@@ -11,10 +11,11 @@ rim itself, shared between neighbouring slices; a start curve and a pressure tha
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Annotated, Any
 
 from ...geometry import voxel_pieces
 from ...opening import Opening
+from ...option import Option
 from ...stages import deformable_model
 from ...volume import Volume
 from ..piece import Piece
@@ -59,18 +60,33 @@ def pieces(
     bone: Volume,
     openings: Sequence[Opening],
     *,
-    axial: bool = False,
-    directions: int = 6,
-    skip_mm: float = 1.5,
-    reach_mm: float = 10.0,
-    pressure_mm: float | None = None,
-    n_snaxels: int = 41,
-    tension: float = 1.0,
-    rigidity: float = 1.0,
-    dt: float = 1.0,
-    tol: float = 1e-3,
-    max_iter: int = 2000,
-    coupling_mm: float = 4.0,
+    axial: Annotated[bool, Option("As the paper: the planes of the scan, not fans from inside the head.")] = False,
+    # from 24 on the fans stand 7.5 degrees apart, and more of them change nothing
+    directions: Annotated[int, Option("In how many directions the fans cross the hole.", 1, 24, usual=(1, 8))] = 6,
+    # bone is known for 0.75 rad, some 55 mm, beside the hole: both together need most of it at most
+    skip_mm: Annotated[float, Option("Boundary left out next to the gap.", 0, 20, "mm", usual=(0, 15))] = 1.5,
+    # three rays, 0.4 mm apart, fix a tangent and its bend
+    reach_mm: Annotated[float, Option("Boundary fitted after that.", 1, 40, "mm", usual=(4, 30))] = 10.0,
+    # 21 snaxels at the upper end rise by k N^2 / 8 = 50 mm, more than any vault does over a hole
+    pressure_mm: Annotated[
+        float | None,
+        Option("Constant k, outward positive; without it k follows from the ends.", -0.1, 1, "mm per index squared"),
+    ] = None,
+    # a fourth difference needs five points; 201 lie closer than voxels across the widest hole
+    n_snaxels: Annotated[int, Option("Points of a balloon, ends included.", 5, 201, usual=(11, 81))] = 41,
+    # k is made for a tension near 1: with 0 nothing holds the balloon against it
+    tension: Annotated[float, Option("w1, against stretching.", 0.5, 10, "ds^2", usual=(0.5, 5))] = 1.0,
+    rigidity: Annotated[float, Option("w2, against bending; 0 for none.", 0, 10, "ds^4", usual=(0.1, 5))] = 1.0,
+    # shorter steps look like rest, longer ones leap over it
+    dt: Annotated[float, Option("Time step.", 0.1, 10, "units of the model's own time")] = 1.0,
+    # below 1e-9 rounding moves a curve; a balloon that may still move 1 a step is not at rest
+    tol: Annotated[float, Option("Change of a curve in a step at which it rests.", 1e-9, 1, "mm (px if axial)")] = 1e-3,
+    # the usual ones rest within some hundred steps; the slowest take seconds for these many
+    max_iter: Annotated[int, Option("Steps at most.", 1, 5000)] = 2000,
+    # over more than 20 mm the rim itself turns
+    coupling_mm: Annotated[
+        float, Option("Standard deviation over which slices share tangents; 0 for none.", 0, 20, "mm", usual=(0, 10))
+    ] = 4.0,
 ) -> Iterator[Piece]:
     """Close each opening slice by slice.
 

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, sparse
 from scipy.sparse.linalg import spsolve
-from scipy.spatial import Delaunay, cKDTree
+from scipy.spatial import Delaunay, QhullError, cKDTree
 from skimage.measure import points_in_poly
 
 from ...errors import InputRefused
@@ -229,15 +229,22 @@ def _triangles(loop: NDArray, step: float) -> tuple[NDArray[np.float64], NDArray
     inner = lattice[points_in_poly(lattice, loop)]
     flat = np.concatenate([loop, inner[cKDTree(dense).query(inner)[0] > _CLEAR * step]])
     # triangles of a hole in the loop's outline are dropped, the others wound counter-clockwise
-    faces = Delaunay(flat).simplices.astype(np.intp)
+    try:
+        faces = Delaunay(flat).simplices.astype(np.intp)
+    except QhullError:  # all points on one line
+        raise _tangled() from None
     faces = faces[points_in_poly(flat[faces].mean(axis=1), loop)]
     turned = _sizes(flat[faces]) < 0
     faces[turned] = faces[turned][:, ::-1]
     if not _bounded_by(faces, len(loop)):
-        raise InputRefused(
-            "TangledRim", "The rim of the hole crosses itself or pinches the hole.", "Give guiding points by hand."
-        )
+        raise _tangled()
     return flat, faces
+
+
+def _tangled() -> InputRefused:
+    """The refusal of a rim that no surface can span."""
+    message = "The rim of the hole crosses itself, pinches the hole or encloses nothing."
+    return InputRefused("TangledRim", message, "Give guiding points by hand.")
 
 
 def _bounded_by(faces: NDArray[np.intp], n: int) -> bool:

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +32,7 @@ from ...errors import InputRefused
 from ...geometry import voxel_pieces
 from ...mesh import Mesh
 from ...opening import Opening
+from ...option import Option
 from ...vault import radius_measurement
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
@@ -74,7 +75,13 @@ class Filling:
     solid: Mesh
 
 
-def pieces(bone: Volume, openings: Sequence[Opening], *, n_guides: int = 12) -> Iterator[Piece]:
+def pieces(
+    bone: Volume,
+    openings: Sequence[Opening],
+    *,
+    # three points make a plane; more than 48 lie closer than the rim of a small hole is known
+    n_guides: Annotated[int, Option("Guiding points around each hole.", 3, 48, usual=(3, 24))] = 12,
+) -> Iterator[Piece]:
     """Close each opening between guiding points that are found by themselves.
 
     Parameters
@@ -82,7 +89,7 @@ def pieces(bone: Volume, openings: Sequence[Opening], *, n_guides: int = 12) -> 
     bone, openings
         As for `methods.design.design`.
     n_guides : int
-        Guiding points around each hole, 3 at least.
+        Guiding points around each hole.
 
     Yields
     ------

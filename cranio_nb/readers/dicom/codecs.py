@@ -1,7 +1,8 @@
 """Compressed frame of a DICOM file -> its numbers. One named decoder per transfer syntax.
 
-A decoder that is tried "if another fails" may accept damaged data, so there is no second one. The size inside the
-compressed stream is compared with the header before the decoder may allocate for it.
+A decoder that is tried "if another fails" may accept damaged data, so there is no second one for that. What the stream
+says of itself is compared with the header before the decoder may allocate for it (`compressed_stream`). Lossless JPEG
+has no check sum and its decoder fills in what it cannot read, so there two decoders must read the same.
 """
 
 from __future__ import annotations
@@ -15,30 +16,19 @@ from pydicom import uid
 from pydicom.encaps import encapsulate
 from pydicom.pixels import get_decoder
 
+from .compressed_stream import JPEG, JPEG2000, JPEG_LS, CompressedStream, check_stream
 from .parse import PixelPlace
 from .slice_header import SliceHeader
 
 LOSSY = {uid.JPEGLSNearLossless, uid.JPEG2000, uid.HTJ2K, uid.JPEGBaseline8Bit, uid.JPEGExtended12Bit}
-_JPEG_LS = {uid.JPEGLSLossless, uid.JPEGLSNearLossless}
-_JPEG2000 = {uid.JPEG2000Lossless, uid.JPEG2000, uid.HTJ2KLossless, uid.HTJ2KLosslessRPCL, uid.HTJ2K}
-_JPEG = {uid.JPEGBaseline8Bit, uid.JPEGExtended12Bit, uid.JPEGLossless, uid.JPEGLosslessSV1}
-# start-of-frame markers of each process: baseline, extended, lossless
-_PROCESSES = {
-    uid.JPEGBaseline8Bit: {0xC0},
-    uid.JPEGExtended12Bit: {0xC0, 0xC1},
-    uid.JPEGLossless: {0xC3},
-    uid.JPEGLosslessSV1: {0xC3},
-}
-COMPRESSED = {uid.RLELossless, *_JPEG_LS, *_JPEG2000, *_JPEG}
+_LOSSLESS_JPEG = {uid.JPEGLossless, uid.JPEGLosslessSV1}
+COMPRESSED = {uid.RLELossless, *JPEG_LS, *JPEG2000, *JPEG}
 # (module, package) of each family's decoder; run length coding needs none
 _NEEDED = {
-    **dict.fromkeys(_JPEG_LS, ("jpeg_ls", "pyjpegls")),
-    **dict.fromkeys(_JPEG2000, ("openjpeg", "pylibjpeg-openjpeg")),
-    **dict.fromkeys(_JPEG, ("imagecodecs", "imagecodecs")),
+    **dict.fromkeys(JPEG_LS, ("jpeg_ls", "pyjpegls")),
+    **dict.fromkeys(JPEG2000, ("openjpeg", "pylibjpeg-openjpeg")),
+    **dict.fromkeys(JPEG, ("imagecodecs", "imagecodecs")),
 }
-# markers before the size: start of frame of JPEG and JPEG-LS (all but tables), and SIZ of JPEG 2000
-_FRAME_MARKERS = {*range(0xC0, 0xD0), 0xF7} - {0xC4, 0xC8, 0xCC}
-_NO_LENGTH = {0x01, *range(0xD0, 0xD9)}
 
 
 def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np.integer]:
@@ -61,7 +51,7 @@ def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np
     Raises
     ------
     Exception
-        Whatever the decoder meets; `ValueError` where the stream's own size is not the header's.
+        Whatever the decoder meets; `ValueError` where the stream is not whole, or not of the header's image.
 
     Warns
     -----
@@ -69,23 +59,32 @@ def decode(header: SliceHeader, place: PixelPlace, data: BinaryIO) -> NDArray[np
         Where the stream holds more than the image needs.
     """
     frame = _frame_bytes(header, place, data)
-    if place.syntax in _JPEG:
-        check_jpeg_stream(frame, place.syntax, header.bits[0])
-    if place.syntax != uid.RLELossless and read_frame_size(frame) != (header.rows, header.cols):
-        raise ValueError("the size in the stream is not that of the header")
-    if place.syntax in _JPEG2000:
+    stream = CompressedStream(frame)
+    if place.syntax != uid.RLELossless:
+        check_stream(stream, place.syntax, header.rows, header.cols, header.bits[0])
+    if place.syntax in JPEG2000:
         import openjpeg
 
         return _signed_as(openjpeg.decode(frame), header)
-    if place.syntax in _JPEG:
-        import imagecodecs
-
-        return _signed_as(imagecodecs.jpeg8_decode(frame), header)
-    if place.syntax in _JPEG_LS:
+    if place.syntax in JPEG:
+        return _signed_as(_jpeg(stream, place.syntax), header)
+    if place.syntax in JPEG_LS:
         import jpeg_ls
 
         return _signed_as(jpeg_ls.decode(np.frombuffer(frame, np.uint8)), header)
     return _run_lengths(frame, header)
+
+
+def _jpeg(stream: CompressedStream, syntax: str) -> NDArray[np.integer]:
+    """The numbers of a JPEG image; of a lossless one, as two decoders read them alike."""
+    import imagecodecs
+
+    numbers = imagecodecs.jpeg8_decode(stream.data)
+    # the second one knows no streams in parts; there the marks between the parts show what is lost
+    if syntax in _LOSSLESS_JPEG and not stream.part_length:
+        if not np.array_equal(numbers, imagecodecs.jpegsof3_decode(stream.data)):
+            raise ValueError("the stream is damaged: two decoders read other numbers")
+    return numbers
 
 
 def _run_lengths(frame: bytes, header: SliceHeader) -> NDArray[np.integer]:
@@ -135,40 +134,6 @@ def _fragments_by_table(
     return [(offset, length) for offset, length in fragments if begin <= offset - 8 - first < end]
 
 
-def check_jpeg_stream(frame: bytes, syntax: str, allocated: int) -> None:
-    """Check that a JPEG stream is of the process that its transfer syntax names, of one component, and whole.
-
-    Parameters
-    ----------
-    frame : bytes
-        One compressed image.
-    syntax : str
-        UID of the transfer syntax.
-    allocated : int
-        Bits of a stored number.
-
-    Raises
-    ------
-    ValueError
-        The decoder would take such a stream, and fill what is missing.
-
-    Examples
-    --------
-    >>> start = bytes.fromhex("FFD8 FFC1 000B 0C 0200 0100 01 011100")
-    >>> check_jpeg_stream(start + bytes(20) + bytes.fromhex("FFD9"), uid.JPEGExtended12Bit, 16)
-    >>> check_jpeg_stream(start + bytes(20), uid.JPEGExtended12Bit, 16)
-    Traceback (most recent call last):
-    ValueError: the stream has no end
-    """
-    marker, at = _frame_marker(frame)
-    if frame[:2] != b"\xff\xd8" or marker not in _PROCESSES[uid.UID(syntax)]:
-        raise ValueError("the stream is of another process than its transfer syntax")
-    if not frame.rstrip(b"\0\xff").endswith(b"\xff\xd9"):
-        raise ValueError("the stream has no end")
-    if frame[at + 9] != 1 or frame[at + 4] > allocated:
-        raise ValueError("the stream holds colours or more bits than the header")
-
-
 def find_missing_decoder(syntax: str) -> str:
     """Find the package that is missing to decode a transfer syntax.
 
@@ -189,50 +154,6 @@ def find_missing_decoder(syntax: str) -> str:
     """
     module, package = _NEEDED.get(uid.UID(syntax), ("", ""))
     return package if module and find_spec(module) is None else ""
-
-
-def read_frame_size(frame: bytes) -> tuple[int, int] | None:
-    """Read the size that a JPEG, JPEG-LS or JPEG 2000 stream declares.
-
-    Parameters
-    ----------
-    frame : bytes
-        One compressed image.
-
-    Returns
-    -------
-    tuple of int or None
-        (rows, cols); None where the stream declares no size.
-
-    Examples
-    --------
-    The head of a JPEG of 512 x 256 pixels with 12 bits:
-
-    >>> start = bytes.fromhex("FFD8 FFC1 000B 0C 0200 0100 01 011100")
-    >>> read_frame_size(start + bytes(20))
-    (512, 256)
-    """
-    marker, at = _frame_marker(frame)
-    if marker == 0x51:  # JPEG 2000: the image's two corners on the reference grid
-        x1, y1, x0, y0 = (int.from_bytes(frame[at + 6 + 4 * i : at + 10 + 4 * i], "big") for i in range(4))
-        return y1 - y0, x1 - x0
-    if marker:  # JPEG, JPEG-LS: precision, then rows and columns
-        rows, cols = (int.from_bytes(frame[at + 5 + 2 * i : at + 7 + 2 * i], "big") for i in range(2))
-        return rows, cols
-    return None
-
-
-def _frame_marker(frame: bytes) -> tuple[int, int]:
-    """The marker of the segment that holds the image's size, and where it is; 0 where there is none."""
-    at = 2  # behind the start-of-image marker
-    while at + 22 <= len(frame) and frame[at] == 0xFF:
-        marker = frame[at + 1]
-        if marker == 0x51 or marker in _FRAME_MARKERS:
-            return marker, at
-        # any other segment is passed over; FF FF is filling
-        step = 0 if marker in _NO_LENGTH or marker == 0xFF else int.from_bytes(frame[at + 2 : at + 4], "big")
-        at += 1 if marker == 0xFF else 2 + step
-    return 0, 0
 
 
 def _signed_as(numbers: NDArray[np.integer], header: SliceHeader) -> NDArray[np.integer]:

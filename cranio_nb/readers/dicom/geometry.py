@@ -125,7 +125,8 @@ def check_geometry(headers: list[SliceHeader]) -> None:
     InputRefused
         ``BadGeometry``, naming the first such slice.
     """
-    for index, header in enumerate(headers):
+    for header in headers:
+        index = header.file if header.frames == 1 else header.frame
         for name, value in (
             ("ImagePositionPatient", header.position),
             ("ImageOrientationPatient", header.orientation),

@@ -1,7 +1,7 @@
 """DICOM file -> its data set up to the pixels, and where the pixels lie. Nothing is decoded.
 
-The file is not trusted: elements, sides and frames are capped here, before anything is allocated for them
-(`inflated` caps the bytes of a deflated file).
+The file is not trusted: elements, sides and frames are capped here, before anything is allocated for them (`inflated`
+caps the bytes of a deflated file).
 """
 
 from __future__ import annotations

@@ -14,6 +14,7 @@ from typing import Any
 import ipywidgets as ipw  # noqa: TID251  (this is the module that may)
 
 from ...drawing.described import encoded_jpeg
+from ...errors import CranioError
 from .controls import Choice, Control, Slider, Switch
 
 _UNSEEN = (
@@ -120,8 +121,15 @@ class Front:
     def _buttons(self) -> list[Any]:
         buttons = [ipw.Button(description=label, layout=ipw.Layout(width="auto")) for label in self.panel.actions]
         for button, action in zip(buttons, self.panel.actions.values(), strict=True):
-            button.on_click(lambda _, act=action: setattr(self.caption, "value", _escaped(act(self.panel))))
+            button.on_click(lambda _, act=action: setattr(self.caption, "value", _escaped(self._said(act))))
         return [ipw.HBox(buttons)] if buttons else []
+
+    def _said(self, act: Callable[[Any], str]) -> str:
+        """What an action answers, or why it could not be done."""
+        try:
+            return act(self.panel)
+        except CranioError as problem:
+            return str(problem)
 
 
 _STEPS = (("step-backward", "one step back"), ("step-forward", "one step on"))

@@ -157,8 +157,8 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
         Controls ``turn_deg``, ``lean_deg`` and ``shift_mm``.
     """
     # plane and surface are measured once; a move only reflects the surface again
-    found = symmetry.find_symmetry_plane(bone, opening.head_centre)
-    surface = measure_outer_surface(bone, opening.head_centre)
+    found = symmetry.find_symmetry_plane(bone, opening.head_centre, opening.head_axes)
+    surface = measure_outer_surface(bone, opening.head_centre, opening.head_axes)
     plane = sum(opening.planes) // 2
     controls = (
         Slider("turn_deg", "turned about the upright axis (degrees)", -10.0, 10.0, 0.0, 0.5),

@@ -16,7 +16,11 @@ from ...drawing.canvas import Canvas
 from ...drawing.palette import BLACK, BLUE, GREY
 from ...evaluation.against_truth import TruthCheck, check_truth
 from ...mesh import OUTER
+from ...methods.catalogue import options_of as options_declared
 from ...methods.design import design
+from ...output.files import json_text
+from ...output.guard import check_writes
+from ...output.staging import replace_file
 from ...vault import opening_search
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
@@ -68,10 +72,23 @@ class Tuner(Panel):
         -------
         Path
             The file.
+
+        Raises
+        ------
+        CannotWrite
+            Where the file holds something else than such parameters, or cannot be written.
         """
         path = Path(path)
-        path.write_text(json.dumps(self.parameters, indent=2) + "\n", encoding="utf-8")
+        check_writes(path.parent, (path.name,), own=lambda folder, name: self._is_own(folder / name))
+        replace_file(path, (json_text(self.parameters) + "\n").encode())
         return path
+
+    def _is_own(self, path: Path) -> bool:
+        """Whether a file holds parameters of the same names, as an earlier `save` wrote them."""
+        try:
+            return not path.is_symlink() and set(json.loads(path.read_text("utf-8"))) == set(self.parameters)
+        except (OSError, ValueError, TypeError, RecursionError):
+            return False
 
 
 def tuner(case: Case) -> Tuner:
@@ -93,15 +110,15 @@ def tuner(case: Case) -> Tuner:
     made = lru_cache(maxsize=32)(lambda *values: _measured(bone, truth, openings, options_of(*values)))
     controls = (
         Choice("slices", "slices", SLICES, SLICES[1]),
-        Slider("directions", "directions of the fans", 1, 8, 6),
-        Slider("skip_mm", "skip: left out at the cut (mm)", 0, 15, 1.5, 0.5),
-        Slider("reach_mm", "reach: fitted after that (mm)", 4, 30, 10, 0.5),
-        Slider("coupling_mm", "tangents shared over (mm)", 0, 10, 4, 0.5),
+        _slider("directions", "directions of the fans"),
+        _slider("skip_mm", "skip: left out at the cut (mm)", 0.5),
+        _slider("reach_mm", "reach: fitted after that (mm)", 0.5),
+        _slider("coupling_mm", "tangents shared over (mm)", 0.5),
         Switch("own", "set k by hand (else from the end tangents)", False),
-        Slider("pressure_mm", "k: pressure (mm per index\N{SUPERSCRIPT TWO})", -0.1, 1.0, 0.062, 0.002),
-        Slider("n_snaxels", "snaxels, N + 1", 11, 81, 41, 2),
-        Slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1, 5, 1, 0.1),
-        Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, 5, 1, 0.1),
+        _slider("pressure_mm", "k: pressure (mm per index\N{SUPERSCRIPT TWO})", 0.002, value=0.062),
+        _slider("n_snaxels", "snaxels, N + 1", 2),
+        _slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1),
+        _slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1),
         Switch("smooth", "surface without stairs", True),
     )
     # the scores at the start, to compare with
@@ -160,6 +177,12 @@ def options_of(
         "rigidity": rigidity,
         "smooth": smooth,
     }
+
+
+def _slider(name: str, label: str, step: float = 1.0, value: float | None = None) -> Slider:
+    """A slider over the usual part of an option's range, from its default, or a value where that is none."""
+    option = options_declared("slicewise")[name]
+    return Slider(name, label, *option.span, option.default if value is None else value, step)
 
 
 Measured = tuple[tuple[float, ...], DistanceMap]

@@ -23,7 +23,7 @@ from pydicom.uid import (
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom.codecs import COMPRESSED, find_missing_decoder, read_frame_size
+from cranio_nb.readers.dicom.codecs import COMPRESSED, find_missing_decoder
 from cranio_nb.readers.dicom.parse import parse_file
 from cranio_nb.readers.dicom.pixel_data import read_stack
 from cranio_nb.readers.dicom.slice_header import read_headers
@@ -187,19 +187,6 @@ def test_missing_decoder_names_the_package(tmp_path: Path, monkeypatch: pytest.M
     monkeypatch.setattr("cranio_nb.readers.dicom.codecs.find_spec", lambda name: None)
     error = refusal(folder)
     assert error.code == "UnsupportedTransferSyntax" and "pyjpegls" in error.remedy
-
-
-@pytest.mark.parametrize("size", [(42, 48), (300, 7), (1, 65535)])
-@pytest.mark.parametrize("marker", [0xC0, 0xC3, 0xF7])
-def test_the_size_in_a_stream_is_read_past_other_segments(marker: int, size: tuple[int, int]) -> None:
-    comment = b"\xff\xfe\x00\x06text" + b"\xff"  # a comment, then a byte of filling
-    frame = bytes([0xFF, marker, 0, 11, 12]) + size[0].to_bytes(2, "big") + size[1].to_bytes(2, "big")
-    assert read_frame_size(b"\xff\xd8" + comment + frame + bytes(30)) == size
-
-
-def test_a_stream_without_a_size_has_none() -> None:
-    assert read_frame_size(b"") is None
-    assert read_frame_size(b"\xff\xd8" + bytes(100)) is None
 
 
 def test_only_compressed_syntaxes_need_a_decoder() -> None:

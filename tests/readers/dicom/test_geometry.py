@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import AXIAL, ORIGIN, assert_same_places, head, read_folder, save, series, truth
+from dicom_series import AXIAL, ORIGIN, assert_same_places, head, read_folder, refusal, save, series, truth
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
@@ -123,3 +123,10 @@ def test_a_stack_knows_its_heights_and_its_lean(tmp_path: Path) -> None:
     np.testing.assert_allclose(stack.origin, ORIGIN, atol=1e-9)
     assert stack.corner_errors(stack.heights).max() < 1e-9
     np.testing.assert_allclose(stack.corner_errors(stack.heights + 1), np.sqrt(1 + 0.2**2), atol=1e-9)
+
+
+@pytest.mark.parametrize("at", [0, 3, 11])
+def test_the_slice_that_lacks_something_is_named_by_its_place_in_the_folder(at: int, tmp_path: Path) -> None:
+    datasets = series(head((12, 20, 24)))
+    del datasets[at].PixelSpacing
+    assert str(refusal(save(tmp_path / "scan", datasets))).startswith(f"Slice {at} (in file order) has no PixelSpacing")

@@ -50,7 +50,7 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
     scene = make_scene(fine, bone, truth, _EVERY)
     try:
         other = radius_measurement.measure_along(
-            fine, symmetry.find_symmetry_plane(bone, opening.head_centre).mirrored(bone)
+            fine, symmetry.find_symmetry_plane(bone, opening.head_centre, opening.head_axes).mirrored(bone)
         )
         scene = replace(scene, mirrored=thin_rays(other, _EVERY).outer)
     except InputRefused:  # no plane of symmetry: the third slider has no effect

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cranio_nb.prior.head_frame import HeadFrame, even_directions, mirror_index
+from cranio_nb.prior.mean_frame import MeanFrame, even_directions, mirror_index
 
 
 def test_the_sphere_is_symmetric_and_even():
@@ -15,6 +15,6 @@ def test_the_sphere_is_symmetric_and_even():
 
 
 def test_a_frame_carries_points_and_stretches_directions():
-    frame = HeadFrame(np.diag([2.0, 1.0, 3.0]), np.array([5.0, 6.0, 7.0]))
+    frame = MeanFrame(np.diag([2.0, 1.0, 3.0]), np.array([5.0, 6.0, 7.0]))
     np.testing.assert_array_equal(frame.to_world(np.array([[1.0, 1.0, 1.0]])), [[7, 7, 10]])
     np.testing.assert_allclose(frame.stretch(np.eye(3)), [2, 1, 3])

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cranio_nb.evaluation.opening_size import measure_opening, name_place
 from cranio_nb.opening import Opening
+from cranio_nb.vault.opening_size import measure_opening, name_place
 from cranio_nb.volume import Volume
 
 

@@ -15,24 +15,24 @@ from scipy.spatial import ConvexHull, cKDTree
 Array = NDArray[np.float64]
 
 MIRROR = np.array([-1.0, 1.0, 1.0])
-"""Turns a point of the head frame into its mirror image."""
+"""Turns a point of the mean frame into its mirror image."""
 
 
 @dataclass(frozen=True, eq=False)
-class HeadFrame:
+class MeanFrame:
     """An affine map from the mean head to a skull: world = origin + matrix @ head.
 
     Parameters
     ----------
     matrix : ndarray, shape (3, 3)
     origin : ndarray, shape (3,)
-        World mm of the head frame's origin, inside the cranial cavity.
+        World mm of the mean frame's origin, inside the cranial cavity.
     misfit_mm : float
         70 % of the skull's points lie closer to the mean head than this, mm.
 
     Examples
     --------
-    >>> HeadFrame(2 * np.eye(3), np.array([0.0, 0.0, 10.0])).to_world(np.array([1.0, 0.0, 3.0]))
+    >>> MeanFrame(2 * np.eye(3), np.array([0.0, 0.0, 10.0])).to_world(np.array([1.0, 0.0, 3.0]))
     array([ 2.,  0., 16.])
     """
 
@@ -41,12 +41,12 @@ class HeadFrame:
     misfit_mm: float = 0.0
 
     def stretch(self, directions: Array) -> Array:
-        """How long a mm of the head frame is in the world.
+        """How long a mm of the mean frame is in the world.
 
         Parameters
         ----------
         directions : ndarray, shape (..., 3)
-            Unit vectors, head frame.
+            Unit vectors, mean frame.
 
         Returns
         -------
@@ -56,12 +56,12 @@ class HeadFrame:
         return np.linalg.norm(directions @ self.matrix.T, axis=-1)
 
     def to_world(self, points: Array) -> Array:
-        """World positions of points of the head frame.
+        """World positions of points of the mean frame.
 
         Parameters
         ----------
         points : ndarray, shape (..., 3)
-            mm of the head frame.
+            mm of the mean frame.
 
         Returns
         -------

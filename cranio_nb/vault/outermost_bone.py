@@ -1,0 +1,192 @@
+"""The outermost bone along rays about the vertex, and where there is none: a bone mask comes in -> maps go out.
+
+Frames: bone in voxel (plane, row, col); rays on a map (v, u) about the vertex; lengths in mm.
+
+Rays run from a point inside the head to the vault. A ray that meets no bone leaves through an opening; rays that leave
+side by side belong to the same one. Nothing has to be clicked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.interpolate import RBFInterpolator
+
+from ..grid import inside_grid
+from ..volume import Volume
+from .orientation import head_centre
+from .ray_casting import FAR_MM, NEAR_MM
+from .ray_grid import RayGrid, filled_from_nearest
+
+STEP_DEG = 1.5
+"""Degrees between rays: 2 mm on the vault."""
+_SEARCHED_DEG = 102.0  # from the vertex down to which the vault is searched; further down lie orbits and base
+_BESIDE_DEG = 10.0  # more, so that an opening can be followed over the border
+_BASE_DEG = 88.0  # an opening that lies wholly further down is an orbit, an ear canal, the base
+_BROW_DEG = 10.0  # by which the line between vault and base rises in front and falls behind
+_SIDE_DEG = 90.0  # the vault proper, over which its radius is averaged
+_SEEN = 0.75  # of the width of a small opening that is seen through, where rays cross a thick wall aslant
+_SAMPLE_MM = 0.75  # along a ray
+_EDGE_MM = 3.0  # a ray that leaves the image so far before its neighbours meet bone is not followed to the end
+_CLEAR_MM = 2.0  # of image beyond the surface expected across an opening; the missing bone may bulge by as much
+_RIM_RAYS, _AROUND_RAYS = 2, 10  # beside an opening: left out as its rim, and up to where the vault is bent across
+_KNOTS = 500  # rays from which the vault is bent across
+
+
+@dataclass(frozen=True, eq=False)
+class OutermostBone:
+    """The outermost bone along rays about the vertex.
+
+    Parameters
+    ----------
+    grid : RayGrid
+        n rays along each side; the middle one points to the vertex.
+    radius : ndarray, shape (n, n)
+        Distance to the outermost bone, mm; nan where there is none.
+    seen : ndarray, shape (n, n)
+        How far each ray stays in the image, mm.
+    """
+
+    grid: RayGrid
+    radius: NDArray[np.float64]
+    seen: NDArray[np.float64]
+
+    def within(self, degrees: float) -> NDArray[np.bool_]:
+        """Rays up to an angle from the vertex.
+
+        Parameters
+        ----------
+        degrees : float
+
+        Returns
+        -------
+        ndarray of bool, shape (n, n)
+        """
+        return self.grid.polar <= np.radians(degrees) + 1e-9
+
+    @property
+    def above_base(self) -> NDArray[np.bool_]:
+        """Rays above the line between vault and base, which rises to the brow in front and falls to the nape behind.
+
+        Returns
+        -------
+        ndarray of bool, shape (n, n)
+        """
+        v, _ = self.grid.offsets
+        front = -v / np.maximum(self.grid.polar, 1e-9)
+        return self.grid.polar <= np.radians(_BASE_DEG - _BROW_DEG * front) + 1e-9
+
+    @property
+    def typical_radius(self) -> float:
+        """Median radius of the vault.
+
+        Returns
+        -------
+        float
+            mm.
+        """
+        return float(np.nanmedian(self.radius[self.within(_SIDE_DEG)]))
+
+
+def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> OutermostBone:
+    """Measure the vault along rays about the vertex.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    axes : ndarray, shape (3, 3)
+        Rows: the head's left, back and up, orthonormal, world.
+
+    Returns
+    -------
+    OutermostBone
+    """
+    half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / STEP_DEG))
+    grid = RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1)
+    directions = grid.directions
+    # outwards: the last bone met stays
+    start, step = bone.to_voxel(grid.centre), bone.steps(directions)
+    radius, seen = np.full(directions.shape[:2], np.nan), np.zeros(directions.shape[:2])
+    for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM):
+        index = start + length * step
+        seen[inside_grid(index, bone.shape)] = length
+        radius[bone.at_index(index, outside=False)] = length
+    return OutermostBone(grid, radius, seen)
+
+
+def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[np.bool_]]:
+    """Rays that leave through one opening each.
+
+    Parameters
+    ----------
+    outermost : OutermostBone
+    min_diameter_mm : float
+        Width of the smallest opening.
+
+    Returns
+    -------
+    list of ndarray of bool, shape (n, n)
+        Largest first.
+    """
+    # an opening has a core in which a disk of the smallest diameter fits; the core grows back to the rim
+    reach = _SEEN * np.degrees(min_diameter_mm / 2 / outermost.typical_radius) / STEP_DEG
+    free = np.isnan(outermost.radius) & outermost.within(_SEARCHED_DEG + _BESIDE_DEG)
+    core = (ndimage.distance_transform_edt(free) > reach) & outermost.within(_SEARCHED_DEG)
+    grown = ndimage.binary_dilation(core, _disk(reach + 1), mask=free)
+    labels, n_groups = ndimage.label(grown, np.ones((3, 3)))
+    on_vault = outermost.above_base
+    groups = []
+    for rays in (labels == i for i in range(1, n_groups + 1)):
+        if not (rays & core & on_vault).any():  # also a pocket beside the hole, without a core
+            continue
+        groups.append(rays)
+    return sorted(groups, key=np.count_nonzero, reverse=True)
+
+
+def lies_in_image(outermost: OutermostBone, rays: NDArray[np.bool_]) -> bool:
+    """Whether the bone that is missing in an opening would lie inside the image, all of it.
+
+    Parameters
+    ----------
+    outermost : OutermostBone
+    rays : ndarray of bool, shape (n, n)
+        Those of the opening.
+
+    Returns
+    -------
+    bool
+
+    Notes
+    -----
+    The outer surface is bent across the opening as a thin plate (Duchon's spline) that meets the bone around it. Where
+    the bone around it is cut off as well, that surface is not to be trusted, and the bone nearest to it counts.
+    """
+    near = filled_from_nearest(outermost.radius)[rays] - _EDGE_MM
+    across = _bent_across(outermost, rays) + _CLEAR_MM
+    return bool((outermost.seen[rays] >= np.maximum(near, across)).all())
+
+
+def _bent_across(outermost: OutermostBone, rays: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Radius of the outer surface expected along the rays of an opening, shape (k,), mm."""
+    beside, beyond = (ndimage.binary_dilation(rays, iterations=n) for n in (_RIM_RAYS, _AROUND_RAYS))
+    around = np.isfinite(outermost.radius) & beyond & ~beside
+    # about the opening's own middle, where the map of rays is true to angles
+    directions = outermost.grid.directions
+    middle = directions[rays].mean(axis=0)
+    axes = np.stack([*np.linalg.svd(middle[None])[2][1:], middle / np.linalg.norm(middle)])
+    own = RayGrid(outermost.grid.centre, axes, 1.0, 1)
+    every = max(1, np.count_nonzero(around) // _KNOTS)
+    knots, radius = own.locate(directions[around]).T[::every], outermost.radius[around][::every]
+    plate = RBFInterpolator(knots, radius, kernel="thin_plate_spline", smoothing=1.0)
+    return np.asarray(plate(own.locate(directions[rays]).T))
+
+
+def _disk(radius: float) -> NDArray[np.bool_]:
+    """Round structuring element."""
+    r = int(np.ceil(radius))
+    v, u = np.mgrid[-r : r + 1, -r : r + 1]
+    return np.hypot(u, v) <= radius + 0.5

@@ -1,0 +1,131 @@
+"""Every option of every method at the ends of its range and beyond; whatever JSON holds is run or refused."""
+
+import json
+from contextlib import suppress
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import cranio_nb as cn
+from cranio_nb.errors import CranioError, InputRefused
+from cranio_nb.methods.catalogue import METHODS, check_options, default_options, options_of, preset_options
+
+SLOW = ("dnurbs", "free_weights")  # minutes on a fine sheet; test_method.py runs them on a coarse one
+ENDS = [
+    (method, name, end)
+    for method in METHODS
+    for name, option in options_of(method).items()
+    for end in ((False, True) if option.kind == "true or false" else (option.low, option.high))
+    if option.kind != "text" and (method, name) != SLOW
+]
+
+
+def beyond(option):
+    """Values just outside a range, and of every other kind."""
+    ends = (option.low, option.high)
+    if option.kind == "whole number":
+        numbers = [ends[0] - 1, ends[1] + 1]
+    elif option.kind == "number":
+        gap = 1e-6 * (ends[1] - ends[0])
+        numbers = [ends[0] - gap, ends[1] + gap]
+    else:
+        numbers = [0, 1]
+    wrong = True if option.kind != "true or false" else "true"
+    return [*numbers, float("nan"), float("inf"), -float("inf"), 10**5000, wrong, [1], {"a": 1}]
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_every_option_declares_what_it_is(method):
+    for name, option in options_of(method).items():
+        assert option.about.endswith("."), name
+        assert option.limits or option.kind == "true or false", name
+        assert option.allows(option.default), name
+        low, high = option.span
+        assert option.low <= low <= high <= option.high, name
+
+
+@pytest.mark.parametrize(("method", "name", "end"), ENDS)
+def test_an_option_at_an_end_of_its_range_runs(method, name, end, skull, openings):
+    made = cn.design(skull("burr_hole"), openings("burr_hole"), method=method, **{name: end})
+    assert made.parameters[name] == end and made.patch.voxels.any()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_beyond_its_range_an_option_is_refused_with_the_range(method, skull):
+    for name, option in options_of(method).items():
+        for value in beyond(option):
+            with pytest.raises(InputRefused) as refused:
+                cn.design(skull("burr_hole"), (), method=method, **{name: value})
+            assert refused.value.code == "BadOption" and name in refused.value.message
+            assert option.wanted in refused.value.remedy
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_presets_lie_within_the_ranges(method, skull):
+    preset = "paper" if method in ("slicewise", "hull", "reflection") else "default"
+    check_options(method, preset_options(method, preset, skull()))
+
+
+NUMBERS = st.floats() | st.integers() | st.integers(-5, 50) | st.floats(-1, 50)
+VALUES = st.recursive(
+    st.none() | st.booleans() | NUMBERS | st.text(max_size=8),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=4), inner, max_size=3),
+    max_leaves=6,
+)
+COSTLY = {"dnurbs": {"free_weights", "max_iter"}, "slicewise": {"max_iter"}}
+
+
+@st.composite
+def requests(draw):
+    """A method and what a file of options might hold for it."""
+    method = draw(st.sampled_from(sorted(METHODS)))
+    names = st.sampled_from(sorted(default_options(method))) | st.text(max_size=6)
+    return method, draw(st.dictionaries(names, VALUES, min_size=1, max_size=3))
+
+
+@settings(max_examples=150, deadline=None, database=None)
+@given(requests())
+def test_whatever_json_holds_is_allowed_or_refused(request_):
+    method, options = request_
+    try:
+        options = json.loads(json.dumps(options))
+        check_options(method, options)
+    except InputRefused as refused:
+        assert refused.code in ("BadOption", "UnknownOption") and refused.remedy
+    else:
+        assert all(options_of(method)[name].allows(value) for name, value in options.items())
+
+
+@st.composite
+def within(draw):
+    """A method and options of it, each anywhere in its range."""
+    method = draw(st.sampled_from(sorted(METHODS)))
+    options = {}
+    for name, option in options_of(method).items():
+        if name in COSTLY.get(method, ()) or not draw(st.booleans()):
+            continue
+        if option.kind == "true or false":
+            options[name] = draw(st.booleans())
+        elif option.kind == "text":
+            options[name] = draw(st.text(max_size=8).filter(option.allows))
+        elif option.kind == "whole number":
+            options[name] = draw(st.integers(int(option.low), int(option.high)))
+        else:
+            options[name] = draw(st.floats(option.low, option.high))
+    return method, options
+
+
+@settings(max_examples=4, deadline=None, database=None, suppress_health_check=list(HealthCheck))
+@given(request_=within())
+def test_any_options_within_their_ranges_end_in_a_design_or_a_named_refusal(request_, skull, openings):
+    method, options = request_
+    with suppress(CranioError):
+        made = cn.design(
+            skull("burr_hole"),
+            openings("burr_hole"),
+            method=method,
+            **({"max_iter": 50} if method == "slicewise" else {}),
+            **options,
+        )
+        assert made.patch.voxels.any()

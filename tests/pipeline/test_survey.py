@@ -1,0 +1,47 @@
+"""A scan, its bone, how the head lies, and every opening judged."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import cranio_nb as cn
+from cranio_nb.output.nifti_files import write_nifti
+from cranio_nb.pipeline.preparation import prepare
+from cranio_nb.pipeline.run import run_design
+from cranio_nb.pipeline.survey import survey_scan
+from cranio_nb.vault import head_frame
+from cranio_nb.vault.opening_search import survey_openings
+
+
+def test_a_survey_is_that_of_the_bone_in_the_frame_it_names(phantom):
+    case = phantom("bilateral")
+    seen = survey_scan(cn.Volume(case.hu, case.affine))
+    np.testing.assert_array_equal(seen.bone.voxels, cn.segment(cn.Volume(case.hu, case.affine)).voxels)
+    assert [one.number for one in seen.found] == [1, 2]
+    again = survey_openings(seen.bone, scan=cn.Volume(case.hu, case.affine))
+    for one, other in zip(seen.found, again, strict=True):
+        assert one.verdict == other.verdict
+        np.testing.assert_array_equal(one.opening.sheet.voxels, other.opening.sheet.voxels)
+        np.testing.assert_array_equal(one.opening.head_axes, seen.frame.ray_axes)
+
+
+@pytest.mark.parametrize("method", ["reflection", "thin-plate"])
+def test_how_the_head_lies_is_found_once_a_run_and_handed_on(method, skull, tmp_path, monkeypatch):
+    write_nifti(skull("unilateral"), tmp_path / "skull.nii.gz")
+    found = []
+
+    def counted(bone, coarse_bone=head_frame.coarse_bone):
+        found.append(bone)
+        return coarse_bone(bone)
+
+    monkeypatch.setattr(head_frame, "coarse_bone", counted)
+    made = run_design(tmp_path / "skull.nii.gz", method=method).prosthesis
+    assert len(found) == 1
+    # openings without axes, as a user may give them: found once more, and the same comes out bit by bit
+    case = prepare(tmp_path / "skull.nii.gz")
+    bare = [replace(one, head_axes=None) for one in case.openings]
+    again = cn.design(case.bone, bare, method=method)
+    assert len(found) == 3
+    np.testing.assert_array_equal(again.patch.voxels, made.patch.voxels)
+    np.testing.assert_array_equal(again.mesh.vertices, made.mesh.vertices)

@@ -1,0 +1,64 @@
+"""Which openings are closed: those that were cut, or those that were chosen."""
+
+import pytest
+from judged_openings import opening
+
+from cranio_nb.errors import InputRefused, NoOpening
+from cranio_nb.vault.opening_choice import check_intact, choose_openings, cut_openings
+
+FOUND = (opening(1, "natural"), opening(2, "cut"), opening(3, "doubtful"), opening(4, "cut"))
+
+
+def numbers(some):
+    return [one.number for one in some]
+
+
+@pytest.mark.parametrize(
+    ("asked", "closed"), [((), [2, 4]), ((3,), [3]), ((1,), [1]), ((4, 3, 4), [3, 4]), ((1, 2, 3, 4), [1, 2, 3, 4])]
+)
+def test_what_was_cut_is_closed_unless_others_are_chosen(asked, closed):
+    assert numbers(choose_openings(FOUND, asked)) == closed
+
+
+def test_a_number_that_there_is_not_is_refused_with_the_list():
+    with pytest.raises(InputRefused, match="no opening 7, 9") as refused:
+        choose_openings(FOUND, (9, 2, 7))
+    assert refused.value.code == "NoSuchOpening"
+    assert all(str(one)[1:] in refused.value.message for one in FOUND)
+    with pytest.raises(InputRefused, match="has no opening"):
+        choose_openings((), (1,))
+
+
+def test_without_any_that_was_cut_the_doubtful_ones_are_listed():
+    with pytest.raises(NoOpening, match="nothing to close") as refused:
+        choose_openings(FOUND[:1])
+    assert "orbit" not in str(refused.value)
+    with pytest.raises(NoOpening, match="--opening 3") as refused:
+        choose_openings((FOUND[0], FOUND[2]))
+    for part in ("pening 3", "left", "planes 4:7", "doubtful", "confidence 0.40", "It is in doubt."):
+        assert part in refused.value.message
+
+
+def test_what_reaches_the_edge_of_the_image_is_refused_only_where_it_is_to_be_closed():
+    found = (opening(1, "cut", whole=False), opening(2, "cut"))
+    for asked in ((), (1,), (1, 2)):
+        with pytest.raises(InputRefused, match="outside the image") as refused:
+            choose_openings(found, asked)
+        assert refused.value.code == "OpeningLeavesImage" and "pening 1" in refused.value.message
+        assert "pening 2" not in refused.value.message
+    assert numbers(choose_openings(found, (2,))) == [2]
+
+
+def test_a_skull_is_intact_without_an_opening_that_was_cut():
+    assert numbers(cut_openings(FOUND)) == [2, 4]
+    check_intact((FOUND[0], FOUND[2]), "Give an intact one.")
+    with pytest.raises(InputRefused, match=r"Opening 2 .*Opening 4 .*Give an intact one") as refused:
+        check_intact(FOUND, "Give an intact one.")
+    assert refused.value.code == "NotIntact"
+
+
+def test_the_record_holds_number_verdict_place_and_size():
+    record = FOUND[2].record()
+    assert record["number"] == 3 and record["kind"] == "doubtful" and record["confidence"] == 0.4
+    assert record["reason"] == "It is in doubt." and record["whole"] is True
+    assert record["place"] == "left" and record["planes"] == (4, 7)
