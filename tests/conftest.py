@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import settings
 
 from cranio_nb.opening import Opening
 from cranio_nb.prior.learning import learn_prior
@@ -14,6 +15,11 @@ from cranio_nb.prior.shape_prior import Prior
 from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case
+
+# the same few examples on every run; `--hypothesis-profile=long` draws new ones, many more, every time
+settings.register_profile("few", max_examples=4, derandomize=True, deadline=None)
+settings.register_profile("long", max_examples=200, deadline=None)
+settings.load_profile("few")
 
 
 @pytest.fixture(scope="session")
