@@ -2,10 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+from ...errors import InputRefused
+
+_DECADE = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
+"""Preferred numbers, series R10 of ISO 3: even steps of the logarithm, in round numbers."""
 
 
 @dataclass(frozen=True)
@@ -19,7 +26,7 @@ class Slider:
         Names it, with its unit.
     low, high, value, step : float
     log : bool
-        Whether values are spaced evenly in their logarithm; `step` is not used then.
+        Whether values are spaced evenly in their logarithm, as `stops`; `step` is not used then.
     player : bool
         Whether it can be played.
     """
@@ -32,6 +39,63 @@ class Slider:
     step: float = 1.0
     log: bool = False
     player: bool = False
+
+    @property
+    def stops(self) -> tuple[float, ...]:
+        """The values of a logarithmic slider, ten in each decade.
+
+        Returns
+        -------
+        tuple of float
+            From `low` to `high`.
+
+        Examples
+        --------
+        >>> Slider("dt", "time step", 1, 10, 1, log=True).stops
+        (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0, 10.0)
+        """
+        decades = range(math.floor(math.log10(self.low)), math.ceil(math.log10(self.high)) + 1)
+        # written as decimals, so that 6.3 / 10 is 0.63
+        values = (float(f"{number}e{decade}") for decade in decades for number in _DECADE)
+        return tuple(value for value in values if self.low <= value <= self.high)
+
+    def taken(self, value: float) -> float:
+        """The value that a hand on the slider reaches, nearest to the one asked for.
+
+        Parameters
+        ----------
+        value : float
+
+        Returns
+        -------
+        float
+            A stop of the slider, an int where its steps are whole.
+
+        Examples
+        --------
+        >>> Slider("width", "width (HU)", 50, 4000, 1500, 10).taken(83)
+        80
+        >>> Slider("dt", "time step", 0.1, 10, 1, log=True).taken(4)
+        4.0
+        """
+        if self.log:
+            return min(self.stops, key=lambda stop: abs(stop - value))
+        if self.whole:
+            nearest = self.low + self.step * round((value - self.low) / self.step)
+            return int(min(max(nearest, self.low), self.high))
+        # tenths have no exact float: rounded, so that they print as they were typed
+        nearest = round(self.low + self.step * round((value - self.low) / self.step), 9)
+        return float(min(max(nearest, self.low), self.high))
+
+    @property
+    def whole(self) -> bool:
+        """Whether all its values are whole numbers.
+
+        Returns
+        -------
+        bool
+        """
+        return not self.log and all(float(v).is_integer() for v in (self.low, self.high, self.value, self.step))
 
 
 @dataclass(frozen=True)
@@ -50,6 +114,27 @@ class Choice:
     options: tuple[str, ...]
     value: str
 
+    def taken(self, value: str) -> str:
+        """The word, if it is one of the options.
+
+        Parameters
+        ----------
+        value : str
+
+        Returns
+        -------
+        str
+
+        Raises
+        ------
+        InputRefused
+            ``UnknownOption``.
+        """
+        if value not in self.options:
+            known = ", ".join(map(repr, self.options))
+            raise InputRefused("UnknownOption", f"{self.name} cannot be {value!r}.", f"It takes: {known}.")
+        return value
+
 
 @dataclass(frozen=True)
 class Switch:
@@ -64,6 +149,19 @@ class Switch:
     name: str
     label: str
     value: bool
+
+    def taken(self, value: Any) -> bool:
+        """On or off.
+
+        Parameters
+        ----------
+        value : bool
+
+        Returns
+        -------
+        bool
+        """
+        return bool(value)
 
 
 Control = Slider | Choice | Switch

@@ -1,12 +1,12 @@
 """Stage 3 under sliders: a balloon, step by step, from its start curve to rest.
 
-Frames: the balloon in chord (along, out) px, the picture in slice (row, col) px.
+Frames: the balloon in chord (along, out) px; the picture shows that frame, so that the chord lies level.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,15 +14,17 @@ from numpy.typing import ArrayLike, NDArray
 from ...curves import ChordFrame, GapEnds, Points, arc_length, cubic, spiral
 from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
-from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
-from ...drawing.pixels import RGB, Window, plain, tinted, windowed
+from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
+from ...drawing.pixels import RGB, plain, tinted, windowed
 from ...stages import deformable_model as stage
 from .controls import Choice, Slider, View
 from .panel import Panel
 
 PRESETS = ("paper: k as set below", "tangent pressure: k from the ends", "spiral: k along its curve")
 MAX_STEPS = 300
-_WIDTH, _HEIGHT, _CHARTS = 512, 512, 340  # px
+_SIDE, _CHARTS = 512, 340  # px
+_SEEN, _ABOVE = 1.2, 0.75  # of the picture's side, and of the part above the chord, in lengths of the chord
+_SIDES = {"A": (-1, 0), "P": (1, 0), "R": (0, -1), "L": (0, 1)}  # of the patient, as slice (row, col)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +51,14 @@ class Inflation:
     converged: bool
 
 
-def balloon(ends: GapEnds, inside: ArrayLike, *, background: NDArray | None = None, px: float | None = None) -> Panel:
+def balloon(
+    ends: GapEnds,
+    inside: ArrayLike,
+    *,
+    background: NDArray | None = None,
+    truth: ArrayLike | None = None,
+    px: float | None = None,
+) -> Panel:
     """Inflate a balloon across a gap: forces, weights, convergence; play, pause, step and scrub its way.
 
     Parameters
@@ -60,6 +69,8 @@ def balloon(ends: GapEnds, inside: ArrayLike, *, background: NDArray | None = No
         Any (row, col) on the head's inner side.
     background : ndarray, shape (R, C), optional
         The slice behind the curve: a bool mask of bone, or HU.
+    truth : array_like, shape (m, 2), optional
+        The curve of the missing bone where it is known, slice (row, col) px.
     px : float, optional
         Size of a pixel in mm, for the scale bar; it counts px when not given.
 
@@ -71,7 +82,8 @@ def balloon(ends: GapEnds, inside: ArrayLike, *, background: NDArray | None = No
     # one run for each setting is kept: moving only the step draws, and computes nothing
     frame = ChordFrame.of(ends, inside)
     angles = frame.end_angles(ends)
-    scene = Scene(ends, frame, _background(background), px)
+    true = None if truth is None else frame.to_chord(truth)
+    scene = Scene(ends, frame, _background(background), true, px)
     run = lru_cache(maxsize=64)(lambda *values: record_inflation(frame.length, angles, *values))
     k = "k: pressure (px per index\N{SUPERSCRIPT TWO}, outward positive)"
     controls = (
@@ -82,11 +94,12 @@ def balloon(ends: GapEnds, inside: ArrayLike, *, background: NDArray | None = No
         Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity (ds\N{SUPERSCRIPT FOUR})", 0.1, 5, 1, 0.1),
         Slider("dt", "dt: time step", 0.1, 10, 1, log=True),
         Slider("tol", "tol: at rest when ||dc|| is below (px)", 1e-4, 1, 1e-3, log=True),
-        Slider("step", "step", 0, MAX_STEPS, MAX_STEPS, player=True),
+        Slider("step", "step", 0, MAX_STEPS, 0, player=True),
     )
     alt = (
-        "A gap in a slice with its end tangents, the start curve dashed and the balloon at the chosen step; beside it "
-        "the change of the curve and its elastic energy at every step."
+        "A gap in a slice, turned so that its chord lies level and the outside is above, with its end tangents, the "
+        "start curve dashed and the balloon at the chosen step; beside it the change of the curve and its elastic "
+        "energy at every step."
     )
     return Panel(controls, lambda step, **values: _view(scene, run(*values.values()), values, step), alt=alt)
 
@@ -169,6 +182,8 @@ class Scene:
     frame : ChordFrame
     background : ndarray of uint8, shape (R, C, 3), or None
         The slice.
+    truth : ndarray, shape (m, 2), or None
+        Curve of the missing bone, chord (along, out) px.
     px : float or None
         Size of a pixel, mm.
     """
@@ -176,7 +191,54 @@ class Scene:
     ends: GapEnds
     frame: ChordFrame
     background: RGB | None
+    truth: Points | None
     px: float | None
+
+    @property
+    def zoom(self) -> float:
+        """Canvas px per slice px: the chord fills the width of the picture, with a margin at both ends.
+
+        Returns
+        -------
+        float
+        """
+        return _SIDE / (_SEEN * self.frame.length)
+
+    def place(self, points: ArrayLike) -> Points:
+        """Places of the chord frame on the canvas.
+
+        Parameters
+        ----------
+        points : array_like, shape (..., 2)
+            Chord (along, out), px.
+
+        Returns
+        -------
+        ndarray, shape (..., 2)
+            (x, y), px of the canvas.
+        """
+        left_top = np.array([-(_SEEN - 1) / 2, _ABOVE]) * self.frame.length
+        return (np.asarray(points, float) - left_top) * [self.zoom, -self.zoom]
+
+    @cached_property
+    def level(self) -> RGB:
+        """The slice turned into the chord frame, white beyond its edges.
+
+        Returns
+        -------
+        ndarray of uint8, shape (H, W, 3)
+        """
+        picture = plain((_SIDE, _SIDE))
+        if self.background is None:
+            return picture
+        # the slice pixel under each pixel of the canvas: `place` backwards
+        y, x = np.mgrid[:_SIDE, :_SIDE] + 0.5
+        chord = np.stack([x, -y], axis=-1) / self.zoom
+        chord += np.array([-(_SEEN - 1) / 2, _ABOVE]) * self.frame.length
+        at = np.rint(self.frame.to_slice(chord)).astype(np.intp)
+        seen = ((at >= 0) & (at < self.background.shape[:2])).all(axis=-1)
+        picture[seen] = self.background[tuple(at[seen].T)]
+        return picture
 
 
 def _background(background: NDArray | None) -> RGB | None:
@@ -193,48 +255,58 @@ def _view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     # a shorter run than the slider shows: its last step
     last = len(run.change)
     step = min(step, last)
-    canvas = Canvas(_WIDTH + _CHARTS, _HEIGHT)
+    canvas = Canvas(_SIDE + _CHARTS, _SIDE)
     _draw_gap(canvas, scene, run, step)
     _draw_way(canvas, run, step, values["tol"])
     state = "at rest" if step == last and run.converged else "not at rest"
     change = f"||dc|| = {run.change[step - 1]:.2g} px, " if step else ""
     k = f"k = {run.pressure.mean():.3g}" + (" on average" if np.ptp(run.pressure) > 1e-12 else "")
-    # what the numbers say: height over the chord, and k
+    # what the numbers say: height over the chord, the ends' angles, and the height of the parabola of this k
     low, apex = run.curves[step][:, 1].min(), run.curves[step][:, 1].max()
     depth = f" and {-low:.1f} px below" if low < -0.05 else ""
-    chord = f"the chord of {scene.frame.length:.1f} px"
-    line = f"Step {step} of {last}, {state}: {change}apex {apex:.1f} px above{depth} {chord}, "
+    theta0, theta1 = np.degrees(scene.frame.end_angles(scene.ends))
+    chord = f"the chord of {scene.frame.length:.1f} px (theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees)"
+    line = f"Step {step} of {last}, {state}: {change}apex {apex:.1f} px above{depth} {chord}; "
+    parabola = run.pressure.mean() * (values["n"] - 1) ** 2 / 8
     off = () if values["preset"] == PRESETS[0] else ("pressure",)
-    return View(canvas.array(), line + f"{k}.", limits={"step": last}, off=off)
+    line += f"{k}, k N\N{SUPERSCRIPT TWO}/8 = {parabola:.1f} px."
+    return View(canvas.array(), line, limits={"step": last}, off=off)
 
 
 def _draw_gap(canvas: Canvas, scene: Scene, run: Inflation, step: int) -> None:
-    """The slice with ends, tangents, start curve and balloon."""
-    # the window holds the chord and room for a bulge, whichever way the gap lies in the slice
-    length = scene.frame.length
-    low, high = -0.3 * length, 0.6 * length
-    corners = scene.frame.to_slice([[0, low], [length, low], [0, high], [length, high]])
-    margin = 0.12 * length
-    window = Window.around((0, 0, _WIDTH, _HEIGHT), corners.min(axis=0) - margin, corners.max(axis=0) + margin)
-    inset = Canvas(_WIDTH, _HEIGHT)
-    # slice, chord, curves, tangents
-    if scene.background is not None:
-        inset.show(scene.background, window)
-    place = lambda curve: window.px(scene.frame.to_slice(curve))  # noqa: E731  (one frame into the next)
+    """The slice with ends, tangents, true bone, start curve and balloon."""
+    length, place = scene.frame.length, scene.place
+    inset = Canvas(_SIDE, _SIDE)
+    inset.place(scene.level, 0, 0)
+    # chord, curves, tangents
     inset.line(place([[0, 0], [length, 0]]), GREY, width=1, dash=(2, 3))
+    if scene.truth is not None:
+        inset.line(place(scene.truth), PURPLE, width=5)
     inset.line(place(run.curves[0]), ORANGE, width=2.5, dash=(8, 5))
     inset.line(place(run.curves[step]), BLUE, width=3)
     inset.dots(place(run.curves[step]), BLUE, radius=3.5)
     for point, tangent in zip(scene.ends.points, scene.ends.tangents, strict=True):
-        inset.arrow(window.px(point), window.px(point + 0.2 * length * tangent), GREEN)
-        inset.dots(window.px(point), "#FFFFFF", radius=5, edge=BLACK)
-    # scale bar and legend
-    unit = 1.0 if scene.px is None else scene.px
-    bar = round_length(0.25 * _WIDTH / window.zoom * unit)
-    inset.scale_bar(14, _HEIGHT - 14, bar / unit * window.zoom, f"{bar:g} {'px' if scene.px is None else 'mm'}")
-    legend = [(ORANGE, "dash", "start"), (BLUE, "line", f"balloon, step {step}"), (GREEN, "line", "end tangents")]
-    inset.legend(_WIDTH - 178, _HEIGHT - 70, legend)
+        at, tip = scene.frame.to_chord([point, point + 0.2 * length * tangent])
+        inset.arrow(place(at), place(tip), GREEN)
+        inset.dots(place(at), "#FFFFFF", radius=5, edge=BLACK)
+    _annotate_gap(inset, scene, step)
     canvas.inlay(inset, 0, 0)
+
+
+def _annotate_gap(inset: Canvas, scene: Scene, step: int) -> None:
+    """Scale bar, legend and, where a slice lies behind, the sides of the patient."""
+    unit = 1.0 if scene.px is None else scene.px
+    bar = round_length(0.25 * _SIDE / scene.zoom * unit)
+    inset.scale_bar(14, _SIDE - 14, bar / unit * scene.zoom, f"{bar:g} {'px' if scene.px is None else 'mm'}")
+    truth = [] if scene.truth is None else [(PURPLE, "line", "true bone")]
+    curves = [(ORANGE, "dash", "start"), (BLUE, "line", f"balloon, step {step}"), (GREEN, "line", "end tangents")]
+    inset.legend(_SIDE - 178, _SIDE - 18 * (3 + len(truth)) - 16, [*curves, *truth])
+    # a letter where its direction leaves the picture
+    sides = {} if scene.background is None else _SIDES
+    for letter, direction in sides.items():
+        along, out = scene.frame.axes @ np.array(direction, float)
+        x, y = np.array([along, -out]) / max(abs(along), abs(out)) * 0.46 * _SIDE + _SIDE / 2
+        inset.text(x, y, letter, size=14, anchor="mm", halo=True)
 
 
 def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:
@@ -243,7 +315,7 @@ def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:
     steps = np.arange(1, last + 1)
     # above: the change, on a logarithmic scale, with the tolerance
     low = max(min(run.change.min(), tol) / 2, 1e-6)
-    changes = Chart((_WIDTH, 0, _CHARTS, 256), (0, last + 1), (low, 2 * max(run.change.max(), tol)), log=True)
+    changes = Chart((_SIDE, 0, _CHARTS, 256), (0, last + 1), (low, 2 * max(run.change.max(), tol)), log=True)
     changes.frame(canvas, "change of the curve ||dc|| (px)", "step")
     changes.level(canvas, tol, VERMILLION, dash=(6, 4))
     (x, y), *_ = changes.px([[0, tol]])
@@ -252,7 +324,7 @@ def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:
     # below: the energy
     low, high = run.energy.min(), run.energy.max()
     margin = max(0.08 * (high - low), 1e-3 * high)
-    energies = Chart((_WIDTH, 256, _CHARTS, 256), (0, last + 1), (low - margin, high + margin))
+    energies = Chart((_SIDE, 256, _CHARTS, 256), (0, last + 1), (low - margin, high + margin))
     energies.frame(canvas, "elastic energy (px\N{SUPERSCRIPT TWO})", "step")
     canvas.line(energies.px(np.column_stack([np.arange(last + 1), run.energy])), SKY, width=2)
     if step:

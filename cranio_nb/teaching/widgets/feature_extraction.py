@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import HalfspaceIntersection
 
-from ...curves import GapEnds, Points, SliceFeatures
+from ...curves import ChordFrame, GapEnds, Points, SliceFeatures
 from ...drawing.canvas import Canvas
 from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, rgb_of
 from ...drawing.pixels import RGB, Window, plain, tinted
@@ -125,7 +125,11 @@ def _view(part: Slices, plane: int, skip_mm: float, reach_mm: float) -> View:
     counts = " and ".join(str(sum(len(points) for points in fit.used)) for fit in fits)
     width = np.hypot(*np.diff(pair[0].points, axis=0)[0]) * part.px
     line = f"Slice {plane}, skip {skip_mm:g} mm, reach {reach_mm:g} mm: {counts} boundary points carry the outer and "
-    return View(canvas.array(), line + f"inner tangents; the outer ends are {width:.1f} mm apart.")
+    line += f"inner tangents; the outer ends are {width:.1f} mm apart, "
+    # the middle of the spine lies on the inner side of the gap
+    frame = ChordFrame.of(pair[0], np.concatenate(found.skeleton).mean(axis=0))
+    theta0, theta1 = np.degrees(frame.end_angles(pair[0]))
+    return View(canvas.array(), line + f"theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees.")
 
 
 def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatures, NDArray[np.bool_]]:
@@ -199,9 +203,10 @@ def _draw_ends(canvas: Canvas, window: Window, fits: list[Fit], px: float, size:
     for fit in fits:
         for points, end, tangent in zip(fit.used, fit.ends.points, fit.ends.tangents, strict=True):
             canvas.dots(window.px(points), fit.colour, radius=1.2 * size + 0.6)
-            # the fitted line, from the farthest used point to the end
-            back = ((points - end) @ tangent).min()
-            canvas.line(window.px([end + back * tangent, end]), BLACK, width=1)
+            # the fitted line goes through the mean of the used points; the tangent starts at the end, beside it
+            middle = points.mean(axis=0)
+            along = (points - middle) @ tangent
+            canvas.line(window.px([middle + along.min() * tangent, middle + along.max() * tangent]), BLACK, width=1)
             canvas.arrow(window.px(end), window.px(end + 12.0 / px * tangent), GREEN, width=1.2 + 0.8 * size)
             canvas.dots(window.px(end), "#FFFFFF", radius=2.0 + 1.5 * size, edge=BLACK)
 

@@ -6,7 +6,6 @@ A slow picture must not fall behind a fast hand: while one was just drawn, newer
 from __future__ import annotations
 
 import asyncio
-import math
 import time
 from collections.abc import Callable
 from typing import Any
@@ -185,13 +184,9 @@ def _widget(control: Control) -> Any:
 
 def _slider(control: Slider, look: dict[str, Any]) -> Any:
     if control.log:
-        options = [
-            10.0 ** (e / 4) for e in range(round(4 * math.log10(control.low)), round(4 * math.log10(control.high)) + 1)
-        ]
-        nearest = min(options, key=lambda o: abs(math.log10(o) - math.log10(control.value)))
-        return ipw.SelectionSlider(options=[(f"{o:.3g}", o) for o in options], value=nearest, **look)
-    whole = all(float(v).is_integer() for v in (control.low, control.high, control.value, control.step))
-    if whole:
+        options = [(f"{stop:.3g}", stop) for stop in control.stops]
+        return ipw.SelectionSlider(options=options, value=control.taken(control.value), **look)
+    if control.whole:
         low, high, step = int(control.low), int(control.high), int(control.step)
         return ipw.IntSlider(int(control.value), min=low, max=high, step=step, **look)
     limits = {"min": control.low, "max": control.high, "step": control.step}

@@ -54,7 +54,7 @@ class Panel:
         Parameters
         ----------
         **values
-            By name of the control.
+            By name of the control; a number between two stops of a slider goes to the nearer one, as by hand.
 
         Returns
         -------
@@ -64,13 +64,14 @@ class Panel:
         Raises
         ------
         InputRefused
-            ``UnknownControl``.
+            ``UnknownControl``, ``UnknownOption``.
         """
         # refused before anything is moved
         for name in values:
             if name not in self.controls:
                 known = ", ".join(self.controls)
                 raise InputRefused("UnknownControl", f"This panel has no control {name!r}.", f"It has: {known}.")
+        values = {name: self.controls[name].taken(value) for name, value in values.items()}
         # with a front end the widgets move too, without one only the values
         if mode() == "widget":
             self.front.set(values)

@@ -150,6 +150,9 @@ def _view(stack: Stack, plane: int, curves: bool) -> View:
     found = sorted({s.status for s in stack.slices}, key=list(_WORDS).index)
     canvas.legend(SIDE + 58, 330, [(_WORDS[s][1], "area", _WORDS[s][0]) for s in found])
     line = f"Slice {plane}, {words}: patch of {stack.areas[at]:.0f} mm\N{SUPERSCRIPT TWO}"
+    if result.inflation is not None:
+        theta0, theta1 = result.inflation.theta0_deg[0], result.inflation.theta1_deg[0]
+        line += f", outer theta0 {theta0:.0f}, theta1 {theta1:.0f} degrees"
     return View(canvas.array(), line + (f" ({result.reason})." if result.reason else "."))
 
 

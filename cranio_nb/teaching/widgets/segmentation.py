@@ -39,7 +39,7 @@ def threshold(ct: Volume) -> Panel:
     last = ct.shape[0] - 1
     controls = (
         Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
-        Slider("threshold_hu", "lowest HU of bone", -200, 1500, stage.BONE_HU, 10),
+        Slider("threshold_hu", "lowest HU of bone", -200, 1500, stage.BONE_HU, 5),
         Slider("max_hole_mm2", "fill holes up to (mm\N{SUPERSCRIPT TWO})", 0, 200, 60, 5),
         Switch("parts", "colour the pieces", False),
     )

@@ -2,8 +2,13 @@
 
 import numpy as np
 
+from cranio_nb.curves import ChordFrame, GapEnds
+from cranio_nb.drawing.canvas import Canvas
+from cranio_nb.drawing.palette import BLACK, rgb_of
+from cranio_nb.drawing.pixels import Window
 from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import widgets
+from cranio_nb.teaching.widgets import feature_extraction as panel_module
 
 
 def middle_plane(opening):
@@ -17,8 +22,24 @@ def test_the_features_line_counts_the_points_of_the_stage(static, skull, opening
     ends = feature_extraction.find_gap_ends(seen, opening.voxels[plane], skip_px=5 / px, reach_px=12 / px)
     width = np.hypot(*np.diff(ends[0].points, axis=0)[0]) * px
     assert f"{width:.1f} mm apart" in panel.view.line
+    # angles of the outer ends, with the middle of the grid, which lies in the head, for the inside
+    frame = ChordFrame.of(ends[0], np.array(bone.shape[1:]) / 2)
+    theta0, theta1 = np.degrees(frame.end_angles(ends[0]))
+    assert panel.view.line.endswith(f"theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees.")
 
 
 def test_a_slice_without_a_gap_says_so(static, skull, opening):
     line = widgets.features(skull(), 2, opening=opening).view.line
     assert line.startswith("Slice 2: ") and "carry" not in line
+
+
+def test_the_line_drawn_is_the_line_fitted_through_the_mean_of_the_points():
+    # points along a row, the end of the gap 10 px beside their line
+    points = np.column_stack([np.full(31, 20.0), np.arange(10.0, 41)])
+    ends = GapEnds(np.array([[30.0, 50.0]]), np.array([[0.0, 1.0]]))
+    canvas = Canvas(100, 60)
+    fit = panel_module.Fit(ends, (points,), "#FFFFFF")
+    panel_module._draw_ends(canvas, Window((0, 0, 100, 60), (0, 60), (0, 100)), [fit], 1.0, 0.1)
+    black = (canvas.array() == rgb_of(BLACK)).all(axis=-1)
+    rows, cols = np.nonzero(black[:, :42])
+    assert set(rows) <= {19, 20} and cols.min() <= 11 and cols.max() >= 39

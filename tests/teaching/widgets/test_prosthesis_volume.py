@@ -24,3 +24,15 @@ def test_the_line_says_the_area_of_the_patch(static, skull, openings):
     at = panel.values["plane"] - stack.first
     area = np.count_nonzero(stack.patches[at]) * np.prod(skull().spacing[1:])
     assert f"patch of {area:.0f} mm" in panel.view.line and area > 0
+
+
+def test_the_line_of_a_bridged_slice_says_its_outer_angles(static, skull, openings):
+    panel = widgets.patch(skull(), openings()[0])
+    stack = fill_slices(skull(), openings()[0], PRESSURES[0])
+    for result in stack.slices:
+        line = panel.set(plane=stack.first + result.plane).view.line
+        if result.status != "balloon":
+            assert "theta" not in line
+            continue
+        theta0, theta1 = result.inflation.theta0_deg[0], result.inflation.theta1_deg[0]
+        assert f"outer theta0 {theta0:.0f}, theta1 {theta1:.0f} degrees" in line
