@@ -279,7 +279,7 @@ def _draw_gap(canvas: Canvas, scene: Scene, run: Inflation, step: int) -> None:
     inset = Canvas(_SIDE, _SIDE)
     inset.place(scene.level, 0, 0)
     # chord, curves, tangents
-    inset.line(place([[0, 0], [length, 0]]), GREY, width=1, dash=(2, 3))
+    inset.line(place([[0.0, 0.0], [length, 0.0]]), GREY, width=1, dash=(2, 3))
     if scene.truth is not None:
         inset.line(place(scene.truth), PURPLE, width=5)
     inset.line(place(run.curves[0]), ORANGE, width=2.5, dash=(8, 5))
