@@ -96,10 +96,11 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 # and let a curve bulge from one end to the other, like a rubber band with wind behind it: a **balloon**. One balloon
 # runs along the outside of the bone, one along the inside. Here is the outer one.
 #
-# The thin grey dashes are the **chord**, the straight line between the ends. The orange dashes are the curve that the
-# balloon starts from. It is made from the ends and their tangents and is a good guess already, so little is left to
-# inflate. The two plots at the right (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04 explains
-# them.
+# The slice is turned so that the **chord**, the straight line between the ends, lies level (thin grey dashes). The
+# orange dashes are the curve that the balloon starts from. It is made from the ends and their tangents and is a good
+# guess already, so little is left to inflate. The broad pink line is the bone that is missing, known because this head
+# is synthetic. The two plots at the right (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04
+# explains them. You see the balloon at rest; in a live notebook put `step` to 0 and press play.
 
 # %% tags=["nbval-check-output"]
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10
@@ -111,8 +112,9 @@ seen = feature_extraction.extract_features(
 outer, inner = feature_extraction.find_gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
 # any point in the head: the balloon must know which way is out
 inside = bone.to_voxel(openings[0].head_centre)[1:]
-player = widgets.balloon(outer, inside, background=bone.voxels[plane], px=case.px)
-player.set(preset="tangent pressure: k from the ends")
+truth = next(iter(case.true_curves(plane)), None)  # None for a scan of your own
+player = widgets.balloon(outer, inside, background=bone.voxels[plane], truth=truth, px=case.px)
+player.set(preset="tangent pressure: k from the ends", step=300)
 
 # %% [markdown]
 # **Predict, then move, then explain.** What happens to the curve if you choose the preset *paper* (the fixed pressure
@@ -125,12 +127,22 @@ player.set(preset="tangent pressure: k from the ends")
 # <summary>Answer</summary>
 #
 # The paper's pressure is the same for every gap, and for this one it is too weak: the curve comes out too flat, 3.8 px
-# high instead of 7.2. With k = -0.1 the wind blows the other way. The curve sinks below the chord, but its ends still
-# leave along their tangents and hold it, so it becomes a flat S: 0.6 px above the chord near one end and 2.8 px below
-# it further on. Lesson 04 tells which `k` fits and why.
+# high instead of 7.2. With k = -0.1 the wind blows the other way, and the curve sinks below the chord. The clamp at
+# each end holds the tangent over one or two snaxels (the dots of the curve) only; further on the wind wins. So the
+# curve becomes a flat S: next to the steeper end it is still 0.6 px above the chord, and further on 2.8 px below. The
+# energy falls at first (from 165.5 to 159.6 px2, step 20) and then *rises* (to 160.3): energy is what the bent and stretched
+# curve holds, and the wind does work on it. Lesson 04 has this account, and tells which `k` fits and why.
 #
 # </details>
 #
+# *The numbers of this answer:*
+
+# %% tags=["nbval-check-output"]
+again = widgets.balloon(outer, inside)
+for k, step in ((0.062, 300), (-0.1, 0), (-0.1, 20), (-0.1, 300)):
+    print(again.set(pressure=k, step=step).view.line)
+
+# %% [markdown]
 # ## 5. All slices (stage 4), and the surface (stage 5)
 #
 # `design` does this for the whole hole, fills between the curves, and wraps the filled voxels in triangles.
@@ -165,7 +177,7 @@ cn.show(bone, prosthesis)
 #
 # ## A mistake to make once
 #
-# Students often ask for too much. What if bone began at 4000 HU? The package says what it found and what to do,
+# What if bone began at 4000 HU, more than any voxel has? The package says what it found and what to do,
 # rather than going on with nothing.
 
 # %% tags=["raises-exception"]

@@ -269,7 +269,7 @@ def _view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     line = f"Step {step} of {last}, {state}: {change}apex {apex:.1f} px above{depth} {chord}; "
     parabola = run.pressure.mean() * (values["n"] - 1) ** 2 / 8
     off = () if values["preset"] == PRESETS[0] else ("pressure",)
-    line += f"{k}, k N\N{SUPERSCRIPT TWO}/8 = {parabola:.1f} px."
+    line += f"energy {run.energy[step]:.1f} px\N{SUPERSCRIPT TWO}; {k}, k N\N{SUPERSCRIPT TWO}/8 = {parabola:.1f} px."
     return View(canvas.array(), line, limits={"step": last}, off=off)
 
 

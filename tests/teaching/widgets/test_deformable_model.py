@@ -85,6 +85,8 @@ def test_the_panel_begins_with_the_start_curve_and_says_angles_and_parabola(stat
     start = cubic(100.0, np.radians(30), np.radians(150), 21)
     assert f"apex {start[:, 1].max():.1f} px" in panel.view.line
     assert "theta0 30.0, theta1 150.0 degrees" in panel.view.line
+    stretch, bend = ((np.diff(start, n, axis=0) ** 2).sum() / 2 for n in (1, 2))
+    assert f"energy {stretch + bend:.1f} px" in panel.view.line
     panel.set(n=41, pressure=0.1)
     assert panel.view.line.endswith("k = 0.1, k N\N{SUPERSCRIPT TWO}/8 = 20.0 px.")
 
