@@ -94,6 +94,16 @@ viewer
 #
 # </details>
 #
+# *The numbers of this answer,* measured in two places where there is one tissue only:
+
+# %% tags=["nbval-check-output"]
+if case.phantom is not None:
+    middle_brain = case.ct.voxels[28:38, 110:146, 110:146]
+    neck = case.ct.voxels[1, 110:146, 110:146]  # the slice of the neck of section 2
+    for name, hu_there in (("brain", middle_brain), ("soft tissue", neck)):
+        print(f"{name}: mean {hu_there.mean():.0f} HU, noise {hu_there.std():.0f} HU")
+
+# %% [markdown]
 # ## 4. Geometry: the affine
 #
 # Where is voxel (plane, row, column)? A matrix with four rows and columns says it: three columns of steps and one
@@ -108,18 +118,23 @@ print(np.round(ct.affine, 2))
 print("voxel (10, 64, 64) lies at", np.round(ct.to_world([10, 64, 64]), 2), "mm")
 
 # %% [markdown]
-# Voxels are rarely cubes. Forget it, and the head is squashed:
+# Voxels are rarely cubes. Forget it, and the head is squashed. Both pictures have the same scale along the rows; A is
+# the front, P the back, S above (superior), I below (inferior).
 
 # %% tags=["nbval-check-output"]
 middle = ct.voxels[:, :, ct.shape[2] // 2]
 ratio = ct.spacing[0] / ct.spacing[1]
-fig, (wrong, right) = pictures.axes(2, height=3.0)
+fig, (wrong, right) = pictures.axes(2, height=3.8)
 look = {"cmap": "gray", "vmin": -700, "vmax": 1300, "origin": "lower"}  # plane 0 at the bottom
 wrong.imshow(middle, aspect=1, **look)
 right.imshow(middle, aspect=ratio, **look)
 wrong.set(title="voxels drawn as squares", xlabel="row", ylabel="plane")
 right.set(title="in true proportion", xlabel="row", ylabel="plane")
-alt = "The same side view of a head twice: squashed to a third of its height, and true."
+sides = {"A": (0.03, 0.5), "P": (0.97, 0.5), "S": (0.5, 0.92), "I": (0.5, 0.06)}
+for letter, place in sides.items():  # of the patient
+    for ax in (wrong, right):
+        ax.text(*place, letter, color="w", ha="center", va="center", transform=ax.transAxes)
+alt = "The same side view of a head twice, equally long: squashed to a third of its height, and true."
 pictures.picture(fig, alt, f"one plane is as high as {ratio:.2f} rows")
 
 # %% [markdown]
@@ -170,6 +185,17 @@ for name, path in (("shuffled", folder), ("tilted", leaning)):
 #
 # </details>
 #
+# *The numbers of (b):*
+
+# %% tags=["nbval-check-output"]
+lean = np.radians(15)
+apart = 2.5 * np.cos(lean)  # mm along the normal
+slid = (len(files) - 1) * 2.5 * np.sin(lean)  # mm, the last slice against the first
+rows = slid / 0.9
+print(f"{apart:.2f} mm apart; moved by {slid:.1f} mm = {rows:.1f} rows,", end=" ")
+print(f"so {np.ceil(rows):.0f} rows more: {one.Rows + np.ceil(rows):.0f} instead of {one.Rows}")
+
+# %% [markdown]
 # ## A mistake to make once
 #
 # Files get lost when a folder is copied. A reader that takes `SliceThickness` for the distance and stacks what is there
