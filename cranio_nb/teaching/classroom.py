@@ -11,8 +11,10 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cache, cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -87,7 +89,12 @@ class LessonCase:
         """
         return tuple(gap.angles for gap in self._widest(plane))
 
-    def _widest(self, plane: int) -> tuple[Gap, ...]:
+    @cached_property
+    def _widest(self) -> Callable[[int], tuple[Gap, ...]]:
+        # the closed form of a plane takes a while, and lessons ask for the same planes again and again
+        return cache(self._find_widest)
+
+    def _find_widest(self, plane: int) -> tuple[Gap, ...]:
         # gaps that both boundaries have, and of these the one with the longest outer chord
         truths = self.phantom.slice_truth(plane) if self.phantom else ()
         gaps = [(t.outer, t.inner) for t in truths if t.outer and t.inner]
