@@ -9,6 +9,6 @@ from cli_runs import cranio
 def test_it_says_what_the_command_says():
     asked = [sys.executable, "-m", "cranio_nb", "design", "--help"]
     told = subprocess.run(asked, capture_output=True, text=True, check=True)
-    usage = "Usage: cranio-nb design [OPTIONS] INPUT"
-    assert told.stdout.startswith(usage)
-    assert told.stdout.splitlines()[1:] == cranio("design", "--help").output.splitlines()[1:]
+    usage, *words = told.stdout.splitlines()
+    assert usage == "Usage: cranio-nb design [OPTIONS] INPUT"
+    assert " ".join(words).split() == " ".join(cranio("design", "--help").output.splitlines()[1:]).split()
