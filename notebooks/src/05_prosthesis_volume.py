@@ -267,7 +267,8 @@ for skip, shorter in skips.items():
 #
 # Compare the rows in pairs. In each of the three heads both causes cost, and `k` costs more: mending `k` alone gains
 # more than mending `skip` alone (0.807 and 0.712 from 0.549 in the first), and mending both gains most (0.850), but less
-# than the sum of the two. The two are not independent: a shorter gap needs less height, so the weak constant does less harm in it. What is left lies with single tangents.
+# than the sum of the two. The two are not independent: a shorter gap needs less height, so the weak constant does less
+# harm in it. What is left lies with single tangents.
 #
 # </details>
 #
