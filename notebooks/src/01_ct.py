@@ -134,7 +134,7 @@ sides = {"A": (0.03, 0.5), "P": (0.97, 0.5), "S": (0.5, 0.92), "I": (0.5, 0.06)}
 for letter, place in sides.items():  # of the patient
     for ax in (wrong, right):
         ax.text(*place, letter, color="w", ha="center", va="center", transform=ax.transAxes)
-alt = "The same side view of a head twice, equally long: squashed to a third of its height, and true."
+alt = "The same side view of a head twice: squashed to a third of its height, and true."
 pictures.picture(fig, alt, f"one plane is as high as {ratio:.2f} rows")
 
 # %% [markdown]
