@@ -219,10 +219,8 @@ if case.truth is not None:
     thin = ct.with_voxels(blurred)
     bone = cn.segment(thin)
     for words, scan in (("mask alone", None), ("with the HU", thin)):
-        (one,) = cn.survey_openings(bone, scan=scan)
-        print(
-            f"{words}: {one.verdict.kind}, confidence {one.verdict.confidence:.2f}. {one.verdict.reason}"
-        )
+        found = cn.survey_openings(bone, scan=scan)[0].verdict
+        print(f"{words}: {found.kind}, confidence {found.confidence:.2f}. {found.reason}")
 
 # %% [markdown]
 # <details>
