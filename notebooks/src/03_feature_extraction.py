@@ -169,6 +169,7 @@ def measured(case, bone, opening, plane, skip, reach):
     return frame.length, np.degrees(frame.end_angles(outer))
 
 
+# %%
 def truth(case, plane):
     """Length (px) and end angles (degrees) of the true outer gap; nan where it is not known."""
     if not case.true_angles(plane):
@@ -215,6 +216,7 @@ def errors_near(case, bone, opening, plane, skip, reach):
     return np.array(steeper)
 
 
+# %%
 heads = [(case, bone, opening, plane)]
 for seed in (1, 2, 3) if case.phantom is not None else ():
     other = classroom.synthetic("class", seed=seed)
@@ -233,8 +235,10 @@ for skip, reach in settings:
     print(f"skip {skip:2} px, reach {reach:2} px: {means}  {scatters}  {slices}")
 jumps = np.abs(np.diff(errors_near(*heads[0], 5, 6), axis=0))
 print(
-    f"reach 6 px, from one slice that has a gap to the next: {jumps.mean():.0f} on average, at most {jumps.max():.0f}"
+    f"reach 6 px, from one slice with a gap to the next: {jumps.mean():.0f} on average,",
+    end=" ",
 )
+print(f"at most {jumps.max():.0f}")
 
 # %% [markdown]
 # With `reach` 6, 10, 25 px the scatter falls in each of the four heads, and from 10 to 25 px the mean error more than
