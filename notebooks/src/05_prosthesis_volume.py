@@ -166,8 +166,9 @@ for seed in (1, 2) if case.phantom is not None else ():
     heads.append((other, other_bone, cn.find_openings(other_bone)))
 
 
+# %%
 def inside_by(case, bone, openings, made):
-    """How far (mm) the outer curve runs inside the true one: mean of each bridged slice, by plane."""
+    """How far (mm) the outer curve runs inside the true one, on average, by plane."""
     below = {}
     for one in made.working[0].slices:
         at = one.plane + max(openings[0].planes[0] - 2, 0)
@@ -187,13 +188,11 @@ def inside_by(case, bone, openings, made):
 for number, (head, its_bone, holes) in enumerate(heads):
     below = inside_by(head, its_bone, holes, cn.design(its_bone, holes, preset="paper"))
     by = np.array([below[at] for at in sorted(below)] or [np.nan])
-    third = len(by) // 3
+    middle = by[len(by) // 3 : len(by) - len(by) // 3]
     print(
         f"head {number}: inside by {by.mean():.1f} mm on average of {len(by)} slices,", end=" "
     )
-    print(
-        f"{by[third : len(by) - third].mean():.1f} mm in the middle third, at most {by.max():.1f} mm"
-    )
+    print(f"{middle.mean():.1f} mm in the middle third, at most {by.max():.1f} mm")
 
 # %% [markdown]
 # The mean hides the middle of the hole, where the gap is widest and the curve runs about 2 mm inside. Section 4 takes
