@@ -38,6 +38,7 @@ def test_a_block_shifted_along_an_axis_has_closed_forms(axis, flip):
     assert far.max() == pytest.approx(n * spacing[axis])
     assert assd(patch, truth) == pytest.approx(far.mean())
     assert rmse(patch, truth) == pytest.approx(np.sqrt((far**2).mean()))
+    assert hd95(patch, truth) == pytest.approx(np.percentile(far, 95))
     assert 0 < assd(patch, truth) < rmse(patch, truth) < hd95(patch, truth) + 1e-12
 
 
@@ -135,6 +136,51 @@ def test_a_score_is_plain_numbers():
     found = dataclasses.asdict(score(filled, filled, filled.with_voxels(~filled.voxels)))
     assert json.loads(json.dumps(found)) == found
     assert found == dict(dice=1, border_dice=1, hd95=0, assd=0, rmse=0, volume_ratio=1, overlap=0)
+
+
+def test_a_refusal_says_which_masks_do_not_fit():
+    home, moved = Volume(~EMPTY, np.eye(4)), Volume(~EMPTY, oblique())
+    for measure in (dice, volume_ratio, surface_distances):
+        with pytest.raises(InputRefused, match="patch and truth"):
+            measure(home, moved)
+    with pytest.raises(InputRefused, match="patch and skull"):
+        overlap(home, moved)
+    for measure in (score, border_dice):
+        with pytest.raises(InputRefused, match="patch and skull"):
+            measure(home, home, moved)
+    with pytest.raises(InputRefused, match="patch and truth"):
+        border_dice(home, moved, home)
+    with pytest.raises(InputRefused, match="truth and skull"):
+        score(home, moved, home)
+    with pytest.raises(InputRefused, match="skull mask is empty") as refusal:
+        border_dice(home, home, home.with_voxels(EMPTY))
+    assert refusal.value.code == "NoBone"
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_the_border_reaches_as_far_along_each_axis_and_no_farther(axis):
+    step = (3.0, 0.5, 0.75)
+    for steps, inside in ((6 / step[axis], True), (6 / step[axis] + 1, False)):
+        skull, patch = np.zeros((2, 12, 30, 20), bool)
+        at = np.array([8, 20, 14])
+        patch[tuple(at)] = True  # wrong: the truth is empty
+        skull[tuple(at - int(steps) * np.eye(3, dtype=int)[axis])] = True
+        found = border_dice(*(Volume(v, oblique(step)) for v in (patch, np.zeros_like(patch), skull)), reach_mm=6.0)
+        assert found == (0 if inside else 1)
+
+
+def test_the_border_is_exact_beside_dense_bone():
+    rng = np.random.default_rng(7)
+    skull, patch = rng.random((2, 5, 60, 12)) < 0.5
+    skull[:, 20:], patch[:, :20] = False, False
+    at = Volume(skull, np.diag([0.1, 0.1, 0.1, 1]))
+    near = ndimage.distance_transform_edt(~skull) <= 30
+    for row in (46, 47, 48, 49, 50):
+        one = patch & (np.arange(60)[:, None] == row)
+        truth = at.with_voxels(one & near)
+        assert border_dice(at.with_voxels(one), truth, at, reach_mm=3.0) == 1
+        wrong = border_dice(at.with_voxels(one), at.with_voxels(np.zeros_like(one)), at, reach_mm=3.0)
+        assert wrong == (0 if (one & near).any() else 1)
 
 
 @pytest.mark.real

@@ -241,3 +241,11 @@ def test_the_slice_farthest_off_the_line_is_named_with_its_distance() -> None:
     spacing = np.array([0.5, 2.0 + 0.0151])  # 0.0604 mm
     found = refused(build_stack, [header(0.0), header(2.0, spacing=spacing), header(1.0)])
     assert found.message.startswith("Slice 2 lies 0.06 mm off")
+
+
+@pytest.mark.parametrize(
+    ("lean", "heights"), [(0.01, (0.0, 1.0, 2.0)), (1e-5, (0.0, 50.0, 100.0)), (5e-7, (0, 1, 100))]
+)
+def test_a_lean_that_moves_the_highest_slice_is_kept(lean: float, heights: tuple[float, ...]) -> None:
+    stack = build_stack([header(z, position=np.array([-3, 7 + lean * z, 100 + z])) for z in heights])
+    np.testing.assert_allclose(stack.shear, [0, lean, 0], atol=1e-12)
