@@ -193,10 +193,10 @@ def test_slices_lie_within_ten_metres_and_have_pixels_from_a_twentieth_to_ten_mi
 
 
 def test_slices_are_sorted_by_their_height_and_equal_ones_keep_their_order() -> None:
-    headers = [header(z, file=k) for k, z in enumerate((5.0, 0.0, 2.5, 0.0))]
+    headers = [header(2.5 * (k % 3), file=k) for k in range(99)]
     ordered, heights = sort_by_height(headers)
-    assert [one.file for one in ordered] == [1, 3, 2, 0]
-    assert heights.tolist() == [0, 0, 2.5, 5]
+    assert [one.file for one in ordered] == sorted(range(99), key=lambda k: (k % 3, k))
+    assert heights.tolist() == 33 * [0] + 33 * [2.5] + 33 * [5]
 
 
 def test_slices_at_one_place_are_no_stack() -> None:
