@@ -1,0 +1,35 @@
+"""Each number with a decimal point that a lesson's text names stands in the lesson's outputs or in its code."""
+
+import re
+
+import nbformat
+import pytest
+from lesson_cells import FOLDER, NAMES
+
+CHECKED = [name for name in NAMES if name[:2] in ("06", "07")]
+DECIMAL = re.compile(r"(?<![\w.-])\d+\.\d+(?![\w.])")
+
+
+def spoken(notebook):
+    """The decimals of the text, without headings and the numbers of exercises."""
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            text = re.sub(r"^#.*$|[Ee]xercise \d+\.\d+|`[^`]*`", "", cell.source, flags=re.M)
+            yield from DECIMAL.findall(text)
+
+
+def shown(notebook):
+    """What the cells print, draw a line about, or are given."""
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            yield cell.source
+            for out in cell.outputs:
+                yield out.get("text") or out.get("evalue") or out.data.get("text/plain", "")
+
+
+@pytest.mark.parametrize("name", CHECKED)
+def test_each_decimal_of_the_text_stands_in_an_output_or_in_code(name):
+    notebook = nbformat.read(FOLDER / f"{name}.ipynb", 4)
+    known = set(re.findall(r"\d+\.\d+", "\n".join(shown(notebook))))
+    lost = [number for number in dict.fromkeys(spoken(notebook)) if number not in known]
+    assert not lost, f"{name}: no cell shows {', '.join(lost)}"
