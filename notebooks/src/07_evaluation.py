@@ -210,7 +210,7 @@ for percent in (0, 2, 4, 6):
 #
 # ## A mistake to make once
 #
-# Compare masks that stand on different grids, here one whose planes are said to be nearer (2.0 mm, not 2.5). As arrays they have the same
+# Compare masks that stand on different grids, here one whose planes are said to be nearer (2 mm apart, not 2.5). As arrays they have the same
 # shape, even the same voxels, and a Dice of 1; the volumes know better:
 
 # %% tags=["raises-exception"]
