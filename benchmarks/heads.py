@@ -34,7 +34,6 @@ from cranio_nb.volume import Volume
 from data_synth import AROUND, SIZES, Case, Pose, face_case
 
 COLUMNS = ("seed", "kind", "outcome", "holes", "designed", "widths_mm", "parameters", "words")
-_LEAST_MM2 = 30.0  # a sliver that noise parts from a hole is no hole of its own
 _REACH_MM = 4.0  # an opening's sheet lies within the missing bone, or so near it
 
 
@@ -80,9 +79,9 @@ def judge_head(seed: int, size: str, holes: bool) -> dict[str, Any]:
 def _holes(case: Case) -> list[NDArray[np.bool_]]:
     """The missing bone, one mask for each hole."""
     labels, count = ndimage.label(case.implant, np.ones((3, 3, 3)))
-    voxel = abs(np.linalg.det(case.affine[:3, :3]))
-    masks = [labels == n + 1 for n in range(count)]
-    return [mask for mask in masks if mask.sum() * voxel > _LEAST_MM2 * 2.0]
+    masks = sorted((labels == n + 1 for n in range(count)), key=np.count_nonzero, reverse=True)
+    drawn = 0 if case.defect == "intact" else int(case.defect.split()[0])
+    return masks[:drawn]  # what is more are slivers that thick slices part from a hole
 
 
 def _widths(case: Case, holes: Sequence[NDArray[np.bool_]]) -> str:

@@ -18,6 +18,7 @@ from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import surface_reconstruction
 from ..vault.opening_search import find_openings
+from ..vault.ray_casting import FAR_MM
 from ..volume import Volume, same_grid
 from .catalogue import COMMON, check_options, check_preset, default_options, find_method, preset_options
 from .piece import Piece
@@ -221,6 +222,10 @@ def _check_openings(bone: Volume, openings: Sequence[Opening]) -> None:
             raise InputRefused("GridMismatch", message, "Give openings on the bone's own grid.")
         if not one.sheet.voxels.any() or not np.isfinite(one.head_centre).all():
             raise InputRefused("NoHole", f"Opening {i} holds no voxel, or has no centre to be seen from.")
+        away = float(np.linalg.norm(one.centre - one.head_centre))
+        if away > FAR_MM:
+            message = f"The head's centre lies {away:.0f} mm from opening {i}; rays from it reach {FAR_MM:.0f} mm."
+            raise InputRefused("NoHole", message, "Give the middle of this head, world mm.")
 
 
 def _check_piece(piece: Any, bone: Volume, method: str) -> None:
