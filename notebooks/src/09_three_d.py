@@ -242,9 +242,9 @@ for a, b in ((1.3, 1.8), (8.5, 11)):
 # the plate sees them: the bone beside the hole is 0.18 mm off, where the package's own leave 0.06 mm. And the same
 # noise moves the plate by 0.25 mm where it moved the bow by 0.84 mm: the rim holds a plate all round.
 #
-# So 1.3, 1.8 and 1.6 mm are no constants of nature, but the package's defaults: short, as the bone beside the hole is
-# well known, and a scan's noise is small after segmentation. On very noisy bone take longer ones. Do not choose them on
-# the head you measure with.
+# So 1.3, 1.8 and 1.6 mm are no constants of nature, but the package's defaults. Being short, they follow the bone beside
+# the hole closely: right where its shape is known better than 0.2 mm, wrong where noise is all there is. Do not choose
+# them on the head you measure with.
 #
 # </details>
 #
