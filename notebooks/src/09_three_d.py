@@ -362,7 +362,7 @@ pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone ar
 # <summary>Answer</summary>
 #
 # For the large one. Across the hole of the class all three are within a voxel, and slices do as well as the
-# plate. Across 120 mm the slices have nothing to go by in the middle; the plate knows the curvature of the other side. That helps here more than in life: the phantom is nearly symmetric. The elastic sheet bulges, as its
+# plate. Across 121 mm the slices have nothing to go by in the middle; the plate knows the curvature of the other side. That helps here more than in life: the phantom is nearly symmetric. The elastic sheet bulges, as its
 # natural shape is a sphere and the side of a head is flatter than that: a good guess for a small hole may be a bad
 # one for a large hole.
 #

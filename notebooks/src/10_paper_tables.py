@@ -132,7 +132,7 @@ for name, values in zip(names, wide.T, strict=True):
 # %% [markdown]
 # From the angles one would read gaps of 56 mm on average. The balloons' ends are L = 74 mm apart, as L has the two `skip`
 # in it, and bone is missing over 61 mm. The tangents are those at the balloons' ends, so L is what belongs to the angles,
-# and the R that fits is 108 mm, not 80: the side of this head is flatter. Gap and radius are two unknowns, and no single
+# and the R that fits is 106 mm, not 80: the side of this head is flatter. Gap and radius are two unknowns, and no single
 # angle gives both. Of the authors' opening we may say that it was a wide one, and not much more.
 #
 # The second end is steeper than the first: the skull is rounder towards the back. The exception is the last bridged
