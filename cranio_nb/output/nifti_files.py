@@ -67,7 +67,7 @@ def _nifti_bytes(voxels: NDArray, affine: NDArray[np.float64]) -> bytes:
     """A NIfTI-1 file with both of its affines, mm, and no text."""
     import nibabel
 
-    image = nibabel.Nifti1Image(voxels, affine)
+    image = nibabel.Nifti1Image(voxels, None)
     image.set_sform(affine, code=1)
     image.set_qform(affine, code=1)
     image.header.set_xyzt_units("mm")

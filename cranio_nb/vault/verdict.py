@@ -187,7 +187,7 @@ def rule_rows() -> list[tuple[str, str, str]]:
     """
     rows = []
     for rule in RULES:
-        low, high = (rule.judge(Signs(0.0, 0.0, on_vault=x, two_walls=0.0, rim_mm=0.0, frame=x)) for x in (0.0, 1.0))
+        low, high = (rule.judge(Signs(x, x, on_vault=x, two_walls=x, rim_mm=x, frame=x)) for x in (0.0, 1.0))
         ends = dict.fromkeys(f"{verdict.confidence:.2f}" for verdict in (low, high))
         rows.append((rule.when, high.kind, " to ".join(ends)))
     return rows

@@ -1,5 +1,7 @@
 """Distances between surfaces whose distance is known; thickness of shells."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from measured_shapes import box, join, oblique, shell, sphere
@@ -11,9 +13,10 @@ from cranio_nb.evaluation.mesh_distances import (
     signed_distance,
     surface_distance,
     thickness,
+    thickness_error,
     thickness_rmse,
 )
-from cranio_nb.mesh import Mesh
+from cranio_nb.mesh import INNER, OUTER, Mesh
 from cranio_nb.volume import Volume
 
 
@@ -65,4 +68,24 @@ def test_no_surface_is_refused():
     for measure in (lambda: surface_distance(np.zeros((1, 3)), nothing), lambda: distance_stats(np.zeros(0))):
         with pytest.raises(InputRefused) as refusal:
             measure()
-        assert refusal.value.code == "EmptyMesh"
+        assert refusal.value.code == "EmptyMesh" and "no" in refusal.value.message
+
+
+@pytest.mark.parametrize("bare", [0, 1])
+def test_a_prosthesis_without_an_outer_side_has_no_thickness_to_compare(bare):
+    pair = [shell(10, 8), shell(10, 8)]
+    pair[bare] = replace(pair[bare], sides=np.full_like(pair[bare].sides, INNER))
+    values = [np.ones(len(one.surface(OUTER).vertices)) for one in pair]
+    with pytest.raises(InputRefused, match="without an outer side") as refusal:
+        thickness_error(pair[0], values[0], pair[1], values[1])
+    assert refusal.value.code == "EmptyMesh"
+
+
+def test_thickness_is_compared_at_the_nearest_true_node():
+    one = shell(10, 8)
+    values = np.arange(len(one.surface(OUTER).vertices), dtype=float)
+    assert thickness_error(one, values, one, values) == 0
+    assert thickness_error(one, values + 3, one, values) == pytest.approx(3)
+    assert thickness_error(one, values, one, values[::-1]) == pytest.approx(
+        np.sqrt(((values - values[::-1]) ** 2).mean())
+    )

@@ -38,6 +38,7 @@ def test_a_block_shifted_along_an_axis_has_closed_forms(axis, flip):
     assert far.max() == pytest.approx(n * spacing[axis])
     assert assd(patch, truth) == pytest.approx(far.mean())
     assert rmse(patch, truth) == pytest.approx(np.sqrt((far**2).mean()))
+    assert hd95(patch, truth) == pytest.approx(np.percentile(far, 95))
     assert 0 < assd(patch, truth) < rmse(patch, truth) < hd95(patch, truth) + 1e-12
 
 
@@ -96,6 +97,7 @@ def test_peer_agrees_on_dice_and_surface_distance():
     peer.Execute(*images)
     at = np.diag([*spacing, 1])
     assert dice(Volume(a, at), Volume(b, at)) == pytest.approx(peer.GetDiceCoefficient(), abs=1e-12)
+    assert hd95(Volume(a, at), Volume(b, at)) == np.percentile(surface_distances(Volume(a, at), Volume(b, at)), 95)
     hausdorff = sitk.HausdorffDistanceImageFilter()
     hausdorff.Execute(*images)
     assert surface_distances(Volume(a, at), Volume(b, at)).max() == pytest.approx(hausdorff.GetHausdorffDistance())
@@ -135,6 +137,47 @@ def test_a_score_is_plain_numbers():
     found = dataclasses.asdict(score(filled, filled, filled.with_voxels(~filled.voxels)))
     assert json.loads(json.dumps(found)) == found
     assert found == dict(dice=1, border_dice=1, hd95=0, assd=0, rmse=0, volume_ratio=1, overlap=0)
+
+
+def test_a_refusal_says_which_masks_do_not_fit():
+    home, moved = Volume(~EMPTY, np.eye(4)), Volume(~EMPTY, oblique())
+    for measure in (dice, volume_ratio, surface_distances):
+        with pytest.raises(InputRefused, match="patch and truth"):
+            measure(home, moved)
+    with pytest.raises(InputRefused, match="patch and skull"):
+        overlap(home, moved)
+    for measure in (score, border_dice):
+        with pytest.raises(InputRefused, match="patch and skull"):
+            measure(home, home, moved)
+    with pytest.raises(InputRefused, match="patch and truth"):
+        border_dice(home, moved, home)
+    with pytest.raises(InputRefused, match="truth and skull"):
+        score(home, moved, home)
+    with pytest.raises(InputRefused, match="skull mask is empty") as refusal:
+        border_dice(home, home, home.with_voxels(EMPTY))
+    assert refusal.value.code == "NoBone"
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_the_border_reaches_as_far_along_each_axis_and_no_farther(axis):
+    step = (3.0, 0.5, 0.75)
+    for steps, inside in ((6 / step[axis], True), (6 / step[axis] + 1, False)):
+        skull, patch = np.zeros((2, 12, 30, 20), bool)
+        at = np.array([8, 20, 14])
+        patch[tuple(at)] = True  # wrong: the truth is empty
+        skull[tuple(at - int(steps) * np.eye(3, dtype=int)[axis])] = True
+        found = border_dice(*(Volume(v, oblique(step)) for v in (patch, np.zeros_like(patch), skull)), reach_mm=6.0)
+        assert found == (0 if inside else 1)
+
+
+@pytest.mark.parametrize("steps", [16, 17, 18])
+def test_the_border_reaches_as_far_from_the_corner_of_a_block(steps):
+    skull, patch = np.zeros((2, 44, 44, 44), bool)
+    skull[:24, :24, :24] = True
+    patch[(23 + steps,) * 3] = True  # wrong: the truth is empty
+    at = np.diag([0.1, 0.1, 0.1, 1])
+    found = border_dice(*(Volume(v, at) for v in (patch, np.zeros_like(patch), skull)), reach_mm=3.0)
+    assert found == (0 if steps * 0.1 * np.sqrt(3) <= 3 else 1)
 
 
 @pytest.mark.real

@@ -1,11 +1,14 @@
 """A mesh survives its file, or there is no file."""
 
+import io
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from cranio_nb.errors import CannotWrite
+from cranio_nb.geometry.mesh_check import check_mesh
 from cranio_nb.mesh import Mesh
 from cranio_nb.output import mesh_files
 from cranio_nb.output.mesh_files import MESH_FORMATS, validate, write_mesh
@@ -132,8 +135,93 @@ def _squeezed(make):
     return squeezed
 
 
+def test_a_file_with_other_faces_is_not_kept(tmp_path, monkeypatch):
+    other = mesh_files._trimesh(join(ball(), ball((3, 0, 0))))
+    monkeypatch.setattr(mesh_files, "_trimesh", lambda mesh: other)
+    with pytest.raises(CannotWrite, match="another one"):
+        write_mesh(ball(), tmp_path / "implant.ply")
+    assert not list(tmp_path.iterdir())
+
+
+def test_faces_may_start_at_another_corner(tmp_path, monkeypatch):
+    mesh, make = ball(), mesh_files._trimesh
+    turns = np.arange(len(mesh.faces))[:, None] % 3
+    turned = np.take_along_axis(mesh.faces, (turns + np.arange(3)) % 3, axis=1)
+    monkeypatch.setattr(mesh_files, "_trimesh", lambda mesh: make(Mesh(mesh.vertices, turned)))
+    write_mesh(mesh, tmp_path / "implant.stl")
+    assert read_back(tmp_path / "implant.stl").is_volume
+
+
+@pytest.mark.parametrize("name", ["implant.3mf", "implant.3MF"])
+def test_3mf_in_another_unit_is_not_kept(tmp_path, monkeypatch, name):
+    make = mesh_files._trimesh
+    monkeypatch.setattr(mesh_files, "_trimesh", lambda mesh: _InInches(make(mesh)))
+    with pytest.raises(CannotWrite, match="millimetre") as refusal:
+        write_mesh(ball(), tmp_path / name)
+    assert refusal.value.code == "MeshInvalid"
+    assert not list(tmp_path.iterdir())
+
+
+class _InInches:
+    """A mesh whose 3MF says inch."""
+
+    def __init__(self, made):
+        self.made, self.is_volume = made, made.is_volume
+
+    def export(self, file_type):
+        packed = io.BytesIO()
+        with (
+            zipfile.ZipFile(io.BytesIO(self.made.export(file_type=file_type))) as old,
+            zipfile.ZipFile(packed, "w") as new,
+        ):
+            for name in old.namelist():
+                new.writestr(name, old.read(name).replace(b'unit="millimeter"', b'unit="inch"'))
+        return packed.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("fault", "said"),
+    [
+        ({"n_faces": 0}, "no faces"),
+        ({"n_unclear": 1}, "1 faces are not finite, have no area or are there twice"),
+        ({"n_open_edges": 1}, "1 edges do not join two faces"),
+        ({"n_flipped_edges": 1}, "1 edges join faces of opposite winding"),
+        ({"n_pinches": 1}, "pinched at 1 vertices"),
+        ({"n_parts": 2}, "2 parts and 1 are wanted"),
+        ({"volume": 0.0}, "volume is 0 mm3"),
+        ({"volume": np.nan}, "volume is nan mm3"),
+        ({"n_crossings": 1}, "1 pairs of faces pass through each other"),
+    ],
+)
+def test_one_fault_in_the_report_is_enough_and_is_said(tmp_path, fault, said):
+    report = replace(check_mesh(ball()), **fault)
+    for refuse in (validate, lambda mesh, report: write_mesh(mesh, tmp_path / "implant.stl", report=report)):
+        with pytest.raises(CannotWrite) as refusal:
+            refuse(ball(), report=report)
+        assert refusal.value.code == "MeshInvalid" and said in refusal.value.message
+        assert "design it again" in refusal.value.remedy
+
+
+def test_a_small_solid_is_one_and_its_own_report_comes_back():
+    report = check_mesh(ball(radius=0.1))
+    assert 0 < report.volume < 1
+    assert validate(ball(radius=0.1), report=report) is report
+
+
+@pytest.mark.parametrize("fault", [_open, _inverted])
+def test_two_libraries_are_asked_too(fault):
+    with pytest.raises(CannotWrite, match="manifold3d or trimesh"):
+        validate(fault(ball()), report=check_mesh(ball()))
+
+
+def test_as_many_parts_are_written_as_are_wanted(tmp_path):
+    write_mesh(join(ball(), ball((3, 0, 0))), tmp_path / "implant.stl", n_parts=2)
+    assert read_back(tmp_path / "implant.stl").body_count == 2
+
+
 @pytest.mark.parametrize("name", ["implant.obj", "implant", "implant.nii"])
 def test_an_unknown_mesh_suffix_is_refused(tmp_path, name):
     with pytest.raises(CannotWrite) as refusal:
         write_mesh(ball(), tmp_path / name)
     assert refusal.value.code == "BadFormat"
+    assert name in refusal.value.message and ".stl, .ply, .3mf" in refusal.value.message

@@ -24,17 +24,20 @@ def test_a_number_that_there_is_not_is_refused_with_the_list():
     with pytest.raises(InputRefused, match="no opening 7, 9") as refused:
         choose_openings(FOUND, (9, 2, 7))
     assert refused.value.code == "NoSuchOpening"
-    assert all(str(one)[1:] in refused.value.message for one in FOUND)
-    with pytest.raises(InputRefused, match="has no opening"):
+    assert refused.value.message.endswith(". " + " ".join("O" + str(one)[1:] for one in FOUND))
+    assert "Give a number" in refused.value.remedy
+    with pytest.raises(InputRefused, match="has no opening") as refused:
         choose_openings((), (1,))
+    assert refused.value.code == "NoSuchOpening" and refused.value.remedy == ""  # there is no number to give
 
 
 def test_without_any_that_was_cut_the_doubtful_ones_are_listed():
     with pytest.raises(NoOpening, match="nothing to close") as refused:
         choose_openings(FOUND[:1])
-    assert "orbit" not in str(refused.value)
+    assert refused.value.code == "NoOpening" and "orbit" not in str(refused.value)
     with pytest.raises(NoOpening, match="--opening 3") as refused:
         choose_openings((FOUND[0], FOUND[2]))
+    assert refused.value.code == "NoOpening"
     for part in ("pening 3", "left", "planes 4:7", "doubtful", "confidence 0.40", "It is in doubt."):
         assert part in refused.value.message
 
@@ -46,7 +49,13 @@ def test_what_reaches_the_edge_of_the_image_is_refused_only_where_it_is_to_be_cl
             choose_openings(found, asked)
         assert refused.value.code == "OpeningLeavesImage" and "pening 1" in refused.value.message
         assert "pening 2" not in refused.value.message
+        assert "covers the whole opening" in refused.value.remedy
     assert numbers(choose_openings(found, (2,))) == [2]
+
+
+def test_the_line_ends_with_the_reason_and_with_the_edge_of_the_image_where_it_is_reached():
+    assert str(opening(1, "cut")).endswith(" It is plain.")
+    assert str(opening(1, "cut", whole=False)).endswith(" It is plain. It reaches the edge of the image.")
 
 
 def test_a_skull_is_intact_without_an_opening_that_was_cut():

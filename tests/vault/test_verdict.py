@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from cranio_nb.vault.verdict import RULES, SURE, Signs, judge, rule_rows
+from cranio_nb.vault.verdict import RULES, SURE, Signs, Verdict, judge, rule_rows
 
 CUT = Signs(60.0, 0.0, on_vault=1.0, two_walls=0.0, rim_mm=6.0, frame=1.0)
 BY_LINE = [  # signs for which each line of the rule is the first to hold, and what follows
@@ -19,9 +19,14 @@ BY_LINE = [  # signs for which each line of the rule is the first to hold, and w
 ]
 
 
+def first_line(signs):
+    """The first line of the rule that holds, from 0."""
+    return [rule.holds(signs) for rule in RULES].index(True)
+
+
 @pytest.mark.parametrize(("line", "signs", "kind"), [(i, *one) for i, one in enumerate(BY_LINE)])
 def test_the_first_line_that_holds_decides(line, signs, kind):
-    assert [rule.holds(signs) for rule in RULES].index(True) == line
+    assert first_line(signs) == line
     verdict = judge(signs)
     assert verdict.kind == kind and verdict == RULES[line].judge(signs)
     assert (verdict.confidence < SURE) == (kind == "doubtful")
@@ -50,3 +55,39 @@ def test_the_less_sure_the_frame_the_more_must_lie_on_the_vault():
 def test_confidence_grows_with_the_vault_and_the_frame():
     values = [judge(replace(CUT, on_vault=v, frame=f)).confidence for v, f in [(0.5, 0.2), (0.5, 0.5), (0.9, 0.9)]]
     assert values == sorted(values) and values[0] < values[-1]
+
+
+@pytest.mark.parametrize(
+    ("signs", "name", "limit", "at", "below"),
+    [
+        (replace(CUT, diameter_mm=9.0), "across_mm", 0.1, 0, 7),
+        (replace(CUT, diameter_mm=9.0), "across_mm", 0.8, 1, 0),
+        (replace(CUT, across_mm=0.5), "diameter_mm", 15.0, 1, 0),
+        (CUT, "across_mm", 0.1, 1, 7),
+        (replace(CUT, rim_mm=1.0), "diameter_mm", 30.0, 7, 2),
+        (replace(CUT, diameter_mm=12.0), "rim_mm", 1.5, 7, 2),
+        (CUT, "on_vault", 0.1, 6, 3),
+        (replace(CUT, two_walls=0.9), "on_vault", 0.5, 5, 4),
+        (CUT, "two_walls", 0.5 + 1e-9, 5, 7),
+        (CUT, "on_vault", 0.3, 7, 6),
+        (replace(CUT, frame=0.0), "on_vault", 0.45, 7, 6),
+    ],
+)
+def test_another_line_decides_from_a_limit_on(signs, name, limit, at, below):
+    assert first_line(replace(signs, **{name: limit})) == at
+    assert first_line(replace(signs, **{name: limit - 1e-9})) == below
+
+
+def test_the_table_gives_the_confidence_of_each_line_at_the_ends_of_the_signs():
+    assert [row[2] for row in rule_rows()] == [
+        *("0.40", "0.90", "0.70", "0.50 to 1.00", "0.80", "0.40", "0.45", "0.60 to 1.00")
+    ]
+
+
+def test_what_is_just_as_sure_as_wanted_is_no_doubt():
+    assert Verdict(False, SURE, "").kind == "cut" and Verdict(True, SURE, "").kind == "natural"
+    assert Verdict(True, SURE - 1e-9, "").kind == "doubtful"
+
+
+def test_a_thin_rim_is_named_by_its_thickness():
+    assert "1.2 mm" in judge(replace(CUT, diameter_mm=12.0, rim_mm=1.24)).reason

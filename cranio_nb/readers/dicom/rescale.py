@@ -187,7 +187,7 @@ def apply_rescale(
     padding = None
     if header.padding is not None and _is_padding(header.padding, slope, intercept):
         low, high = header.padding
-        padding = (stored == low) if low == high else (stored >= low) & (stored <= high)
+        padding = (stored >= low) & (stored <= high)
 
     # whole numbers stay whole numbers, in 16 bits
     values = clear_unused_bits(stored, header)
@@ -195,7 +195,7 @@ def apply_rescale(
     if not whole or not _fits(values, slope, intercept):
         hu: NDArray = (values * slope + intercept).astype(np.float32)
     elif slope == 1:
-        hu = (values + np.int32(intercept)).astype(np.int16) if intercept else values.astype(np.int16)
+        hu = (values + np.int32(intercept)).astype(np.int16)
     else:
         hu = (values.astype(np.int64) * int(slope) + int(intercept)).astype(np.int16)
 

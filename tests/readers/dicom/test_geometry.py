@@ -1,6 +1,9 @@
 """Stacks of slices, straight and tilted: every landmark keeps its place in the patient."""
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,7 +12,7 @@ from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom.geometry import axes_of, build_stack
+from cranio_nb.readers.dicom.geometry import axes_of, build_stack, check_geometry, sort_by_height
 from cranio_nb.volume import Volume
 
 SHAPE = (30, 44, 40)  # slices, rows, columns
@@ -130,3 +133,119 @@ def test_the_slice_that_lacks_something_is_named_by_its_place_in_the_folder(at: 
     datasets = series(head((12, 20, 24)))
     del datasets[at].PixelSpacing
     assert str(refusal(save(tmp_path / "scan", datasets))).startswith(f"Slice {at} (in file order) has no PixelSpacing")
+
+
+def header(height: float = 0.0, **changes: object) -> SimpleNamespace:
+    """An axial slice of 4 rows and 5 columns, 100 mm from the origin along the height, as a header says it."""
+    place = {"position": np.array([-3.0, 7.0, 100.0 + height]), "orientation": np.array(AXIAL, float)}
+    spacing = {"spacing": np.array([0.5, 2.0]), "rows": 4, "cols": 5, "file": 0, "frame": 0, "frames": 1}
+    return SimpleNamespace(**(place | spacing | changes))
+
+
+def refused(call: Callable[..., object], *given: object) -> InputRefused:
+    """The refusal of a geometry, which says what to do."""
+    with pytest.raises(InputRefused) as caught:
+        call(*given)
+    assert caught.value.code == "BadGeometry" and "Export" in caught.value.remedy
+    return caught.value
+
+
+def test_directions_may_be_off_by_the_rounding_of_a_header_and_no_more() -> None:
+    for off, place in ((1.9e-3, 1), (0.95e-3, 0), (0.95e-3, 4)):  # the square of a length is off by twice as much
+        right, wrong = np.array(AXIAL, float), np.array(AXIAL, float)
+        right[place] += off
+        wrong[place] += 1.2 * off
+        assert axes_of(right)[2].tolist() == [0, 0, 1]
+        assert "ImageOrientationPatient" in refused(axes_of, wrong).message
+
+
+@pytest.mark.parametrize("turn", [(1, 0, 0, 0, 1, 0), (1, 0, 0, 0, -1, 0), (0, 1, 0, 0, 0, -1), (0, 0, 1, 1, 0, 0)])
+def test_the_normal_points_to_the_left_the_back_or_the_top(turn: tuple[int, ...]) -> None:
+    cols, rows, normal = axes_of(np.array(turn, float))
+    np.testing.assert_array_equal([*cols, *rows], turn)
+    np.testing.assert_array_equal(normal, np.abs(np.cross(cols, rows)))
+    assert not np.signbit(normal).any()
+
+
+@pytest.mark.parametrize("tag", ["ImagePositionPatient", "ImageOrientationPatient", "PixelSpacing"])
+def test_the_first_slice_whose_geometry_is_absent_or_no_number_is_named(tag: str) -> None:
+    name = {"ImagePositionPatient": "position", "ImageOrientationPatient": "orientation", "PixelSpacing": "spacing"}[
+        tag
+    ]
+    broken = getattr(header(), name).copy()
+    broken[-1] = np.nan
+    for value, what in ((None, "has no"), (broken, "has an unreadable")):
+        headers = [header(file=k, **({name: value} if k >= 2 else {})) for k in range(4)]
+        assert refused(check_geometry, headers).message == f"Slice 2 (in file order) {what} {tag}."
+        frames = [header(frame=k, frames=9, **({name: value} if k >= 5 else {})) for k in range(9)]
+        assert refused(check_geometry, frames).message == f"Slice 5 (in file order) {what} {tag}."
+
+
+def test_slices_lie_within_ten_metres_and_have_pixels_from_a_twentieth_to_ten_millimetres() -> None:
+    for at in (-1e4, 1e4):
+        check_geometry([header(position=np.array([0, at, 0]))])
+        found = refused(check_geometry, [header(), header(file=1, position=np.array([0, 1.001 * at, 0]))])
+        assert "Slice 1 " in found.message and "more than 10000 mm" in found.message
+    check_geometry([header(spacing=np.array([0.05, 10.0])), header(spacing=np.array([10.0, 0.05]))])
+    for spacing in ([0.049, 1.0], [1.0, 0.049], [10.1, 1.0], [1.0, 10.1]):
+        found = refused(check_geometry, [header(), header(file=1, spacing=np.array(spacing))])
+        assert "Slice 1 " in found.message and "outside 0.05 to 10.0 mm" in found.message
+
+
+def test_slices_are_sorted_by_their_height_and_equal_ones_keep_their_order() -> None:
+    headers = [header(2.5 * (k % 3), file=k) for k in range(99)]
+    ordered, heights = sort_by_height(headers)
+    assert [one.file for one in ordered] == sorted(range(99), key=lambda k: (k % 3, k))
+    assert heights.tolist() == 33 * [0] + 33 * [2.5] + 33 * [5]
+
+
+def test_slices_at_one_place_are_no_stack() -> None:
+    assert "All 3 slices" in refused(build_stack, [header(z) for z in (0.0, 0.0, 0.9e-3)]).message
+    assert build_stack([header(z) for z in (0.0, 1.1e-3)]).extent == pytest.approx(1.1e-3, rel=1e-6)
+
+
+def test_a_stack_lies_where_its_slices_lie() -> None:
+    stack = build_stack([header(z) for z in (6.0, 0.0, 1.0, 3.0)])  # of any steps
+    np.testing.assert_allclose(stack.origin, [-3, 7, 100], atol=1e-9)
+    assert stack.heights.tolist() == [0, 1, 3, 6] and stack.extent == 6
+    assert [one.position[2] for one in stack.headers] == [100, 101, 103, 106]
+    assert (*stack.along_cols, *stack.along_rows) == AXIAL and stack.normal.tolist() == [0, 0, 1]
+    assert stack.spacing.tolist() == [0.5, 2]
+    assert stack.shear.tolist() == [0, 0, 0]  # of an upright stack: exactly
+    np.testing.assert_allclose(stack.corner_errors(stack.heights), 0, atol=1e-9)
+    np.testing.assert_allclose(
+        stack.corner_errors(stack.heights + np.array([0, 0.5, -2, 0])), [0, 0.5, 2, 0], atol=1e-9
+    )
+
+
+@pytest.mark.parametrize(
+    ("changes", "off"),
+    [
+        ({"spacing": np.array([0.5, 2.01])}, 0.04),  # 4 steps along the columns
+        ({"spacing": np.array([0.513, 2.0])}, 0.039),  # 3 steps along the rows
+        ({"spacing": np.array([0.51, 2.01])}, np.hypot(0.04, 0.03)),
+        ({"rows": 5}, 0.5),
+        ({"cols": 7}, 4.0),
+        ({"orientation": np.array([0, 1.0, 0, 1, 0, 0])}, np.hypot(8, 8)),
+    ],
+)
+def test_the_corner_farthest_off_counts(changes: dict[str, object], off: float) -> None:
+    stack = build_stack([header(z) for z in (0.0, 1.0, 2.0)])
+    other = replace(stack, headers=(*stack.headers[:2], header(2.0, **changes)))  # type: ignore[arg-type]
+    np.testing.assert_allclose(other.corner_errors(stack.heights), [0, 0, off], atol=1e-9)
+
+
+def test_the_slice_farthest_off_the_line_is_named_with_its_distance() -> None:
+    spacing = np.array([0.5, 2.0 + 0.0124])  # 0.0496 mm at the fourth step
+    build_stack([header(0.0), header(1.0), header(2.0, spacing=spacing)])
+    spacing = np.array([0.5, 2.0 + 0.0151])  # 0.0604 mm
+    found = refused(build_stack, [header(0.0), header(2.0, spacing=spacing), header(1.0)])
+    assert found.message.startswith("Slice 2 lies 0.06 mm off")
+
+
+@pytest.mark.parametrize(
+    ("lean", "heights"), [(0.01, (0.0, 1.0, 2.0)), (1e-5, (0.0, 50.0, 100.0)), (5e-7, (0, 1, 100))]
+)
+def test_a_lean_that_moves_the_highest_slice_is_kept(lean: float, heights: tuple[float, ...]) -> None:
+    stack = build_stack([header(z, position=np.array([-3, 7 + lean * z, 100 + z])) for z in heights])
+    np.testing.assert_allclose(stack.shear, [0, lean, 0], atol=1e-12)

@@ -60,6 +60,37 @@ def test_any_rescale_is_refused_or_gives_finite_hu(slope: float, intercept: floa
     assert np.isfinite(pairs @ [65535.0, 1.0]).all()
 
 
+@pytest.mark.parametrize(("slope", "intercept"), [(1e-3, -32768.0), (1e3, 32768.0), (1, -1024)])
+def test_rescale_up_to_the_limits_is_taken_as_it_is(slope: float, intercept: float) -> None:
+    pairs, unscaled = check_rescale([OneSlice(slope, intercept)] * 3)  # type: ignore[list-item]
+    assert pairs.tolist() == [[slope, intercept]] * 3 and pairs.dtype == np.float64 and unscaled is False
+
+
+@pytest.mark.parametrize(
+    ("slope", "intercept"), [(0.99e-3, 0), (1001, 0), (-1, 0), (1, 32769), (1, -32769), (np.nan, 0), (1, np.inf)]
+)
+def test_rescale_beyond_the_limits_is_refused_with_slice_and_values(slope: float, intercept: float) -> None:
+    with pytest.raises(InputRefused) as caught:
+        check_rescale([OneSlice(1, 0), OneSlice(slope, intercept)])  # type: ignore[list-item]
+    assert caught.value.code == "BadRescale" and "Export" in caught.value.remedy
+    for part in ("Slice 1 ", f"slope {slope:g}", f"intercept {intercept:g}"):
+        assert part in caught.value.message
+
+
+def test_without_any_rescale_numbers_stay_as_they_are() -> None:
+    pairs, unscaled = check_rescale([OneSlice(None, None)] * 3)  # type: ignore[arg-type, list-item]
+    assert pairs.tolist() == [[1, 0]] * 3 and unscaled is True
+
+
+@pytest.mark.parametrize("lacking", [(None, None), (None, -1024.0), (1.0, None)])
+def test_the_first_slice_that_lacks_its_rescale_is_named(lacking: tuple[float, float]) -> None:
+    slices = [OneSlice(1.0, -1024.0), OneSlice(*lacking), OneSlice(1.0, -1024.0), OneSlice(*lacking)]
+    with pytest.raises(InputRefused) as caught:
+        check_rescale(slices)  # type: ignore[arg-type]
+    assert caught.value.code == "InconsistentRescale" and "Export" in caught.value.remedy
+    assert caught.value.message.startswith("Slice 1 has no rescale slope")
+
+
 EVERY = slice(None)
 
 
@@ -103,6 +134,54 @@ def test_hu_beyond_sixteen_bits_are_kept_as_real_numbers() -> None:
     np.testing.assert_array_equal(hu, [[-1024, 64511]])
 
 
+@pytest.mark.parametrize(
+    ("stored", "slope", "intercept"),
+    [
+        ([0, 65535], 1, -32768),  # the whole range of int16
+        ([0, 65535], 1, -32769),
+        ([0, 65535], 1, -32767),
+        ([-32768, 0], 1, -1),
+        ([0, 32767], 1, 1),
+        ([-16384, 0], 2, 0),
+        ([-16385, 0], 2, 0),
+        ([0, 16384], 2, 0),
+    ],
+)
+def test_hu_are_sixteen_bits_where_all_fit_and_right_everywhere(
+    stored: list[int], slope: float, intercept: float
+) -> None:
+    values = np.array([stored], np.uint16 if stored[1] > 32767 else np.int16)
+    wanted = np.array([stored]) * slope + intercept
+    hu, _ = apply_rescale(values, slice_of(), float(slope), float(intercept))  # type: ignore[arg-type]
+    np.testing.assert_array_equal(hu, wanted)
+    fits = wanted.min() >= -(2**15) and wanted.max() < 2**15
+    assert hu.dtype == (np.int16 if fits else np.float32)
+
+
+@pytest.mark.parametrize(
+    ("stored", "slope", "intercept", "padded"),
+    [
+        ((124, 124), 1, -1024, True),  # -900 HU
+        ((125, 125), 1, -1024, False),
+        ((0, 125), 1, -1024, False),  # some of it in the head
+        ((0, 0), 1, -1024, True),
+        ((100, 100), 2, -1024, False),  # -824 HU
+        ((5024, 5024), 1, -1024, False),  # 4000 HU
+        ((5025, 5025), 1, -1024, True),
+        ((5024, 9000), 1, -1024, False),
+    ],
+)
+def test_padding_is_believed_at_minus_900_hu_or_less_and_above_4000(
+    stored: tuple[int, int], slope: float, intercept: float, padded: bool
+) -> None:
+    values = np.array([[stored[0], 1024, stored[1]]], np.uint16)
+    hu, found = apply_rescale(values, slice_of(padding=stored), float(slope), float(intercept))  # type: ignore[arg-type]
+    assert (found is not None) == padded
+    if found is not None:
+        assert found.tolist() == [[True, False, True]]
+    np.testing.assert_array_equal(hu, np.where([[padded, False, padded]], -1024, values * float(slope) + intercept))
+
+
 @pytest.mark.parametrize("padding", [(63536, 63536), (63000, 64000)])
 def test_padding_is_found_in_stored_numbers_before_bits_are_cleared(padding: tuple[float, float]) -> None:
     stored = np.array([[0, 1024, 63536]], np.uint16)  # the last has bits above the twelve that are image
@@ -115,17 +194,37 @@ def test_the_level_of_one_slice_is_held_against_the_others() -> None:
     levels, pairs = np.full(20, -1000.0), np.tile([1.0, -1024.0], (20, 1))
     assert check_levels(levels, pairs) == []
     levels[7] = 24.0
-    assert check_levels(levels, pairs)[0].values == {"slices": [7]}  # its rescale is that of the others
+    (finding,) = check_levels(levels, pairs)  # its rescale is that of the others
+    assert (finding.code, finding.severity, finding.values) == ("LevelJump", "warning", {"slices": [7]})
+    assert "1 slices" in finding.message and "300 HU" in finding.message
     pairs[7, 1] = 0.0
     with pytest.raises(InputRefused) as caught:
         check_levels(levels, pairs)
-    assert caught.value.code == "InconsistentRescale" and "Slice 7" in caught.value.message
+    assert caught.value.code == "InconsistentRescale" and "Export" in caught.value.remedy
+    for part in ("Slice 7", "slope 1 ", "intercept 0", "at 24 HU instead of -1000"):
+        assert part in caught.value.message
 
 
-@pytest.mark.parametrize(("low", "signed"), [(-1000, False), (0, True), (-3000, True)])
+@pytest.mark.parametrize(("off", "count", "named"), [(300, 1, 0), (301, 1, 1), (301, 2, 2), (301, 3, 0), (301, 0, 0)])
+def test_up_to_a_fifth_of_the_slices_more_than_300_hu_away_are_named(off: float, count: int, named: int) -> None:
+    levels = np.full(10, -1000.0)
+    levels[:count] += off
+    findings = check_levels(levels, np.tile([1.0, -1024.0], (10, 1)))
+    assert [finding.values for finding in findings] == ([{"slices": list(range(named))}] if named else [])
+
+
+@pytest.mark.parametrize("low", [-1200, -1000, -900])
+def test_signed_numbers_from_the_level_of_air_are_hu(low: int) -> None:
+    finding = check_unscaled(np.array([low, 40, 900]), True)
+    assert (finding.code, finding.severity, finding.values) == ("MissingRescale", "warning", {"minimum": low})
+    assert str(low) in finding.message
+
+
+@pytest.mark.parametrize(("low", "signed"), [(-1000, False), (0, True), (-3000, True), (-1201, True), (-899, True)])
 def test_numbers_without_rescale_are_hu_only_with_a_sign_and_air(low: int, signed: bool) -> None:
     hu = np.array([low, 40, 900])
     with pytest.raises(InputRefused) as caught:
         check_unscaled(hu, signed)
     assert caught.value.code == "MissingRescale"
+    assert f"is {low}:" in caught.value.message and "Export" in caught.value.remedy
     assert check_unscaled(hu, signed, ("no_rescale",)).severity == "warning"
