@@ -342,8 +342,9 @@ def check_same_grid(a: Volume, b: Volume, what: str) -> None:
         ``GridMismatch``.
     """
     if not same_grid(a, b):
+        here, there = (f"{v.shape} of {v.spacing.round(2)} mm at {v.affine[:3, 3].round(1)}" for v in (a, b))
         raise InputRefused(
             "GridMismatch",
-            f"The {what} lie on different grids, of shapes {a.shape} and {b.shape}.",
+            f"The {what} lie on different grids (shape, voxel, corner): {here} and {there}.",
             "Bring them onto one grid first.",
         )

@@ -185,3 +185,10 @@ def test_volumes_on_other_grids_are_refused_by_name():
     with pytest.raises(InputRefused, match="patch and bone") as refused:
         check_same_grid(v, v.crop(np.s_[1:, :, :]), "patch and bone")
     assert refused.value.code == "GridMismatch"
+
+
+def test_grids_of_one_shape_are_told_apart_by_voxel_and_corner():
+    v = Volume(np.zeros((2, 3, 4), bool), np.diag([2.5, 0.9, 0.9, 1.0]))
+    thinner = Volume(v.voxels, np.diag([2.0, 0.9, 0.9, 1.0]))
+    with pytest.raises(InputRefused, match=r"\[2\.5 0\.9 0\.9\] mm .* \[2\. +0\.9 0\.9\] mm"):
+        check_same_grid(v, thinner, "patch and bone")

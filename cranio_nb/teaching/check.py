@@ -121,10 +121,22 @@ def _say(task: Exercise, cases: list[tuple[Any, ...]], found: list[Any], errors:
     for mistake, sentence in task.mistakes:
         if all(_error(task, value, mistake(*case)) <= task.tolerance for value, case in zip(found, cases, strict=True)):
             return sentence
+    if not all(_finite(value) for value in found):
+        return (
+            "There is NaN or infinity in the answer, not a finite number: which step has no result (arcsin, sqrt, / 0)?"
+        )
     if np.isinf(worst):
         return f"The answer does not have the right form: {task.form}."
     unit = f" {task.unit}" if task.unit else ""
     return f"Not yet: off by up to {worst:.2g}{unit}, where {task.tolerance:.2g}{unit} is allowed."
+
+
+def _finite(value: Any) -> bool:
+    """Whether an answer holds neither NaN nor infinity; what is no number counts as finite."""
+    try:
+        return bool(np.isfinite(np.asarray(value, float)).all())
+    except (TypeError, ValueError):
+        return True
 
 
 def _error(task: Exercise, value: Any, wanted: Any) -> float:

@@ -73,6 +73,18 @@ pictures.picture(
     fig, alt, f"area {raw.areas.sum() / 100:.1f} and {smooth.areas.sum() / 100:.1f} cm2"
 )
 
+# %% tags=["nbval-check-output"]
+for rise, run in ((1, 1), (1, 2)):
+    slope = np.hypot(rise, run)
+    cubes, marching = rise + run, run - rise + rise * np.sqrt(2)
+    print(
+        f"a slope of {rise} in {run}: faces of cubes {cubes / slope - 1:+.0%} area, "
+        f"marching cubes {marching / slope - 1:+.0%}"
+    )
+print(f"here: raw {raw.areas.sum() / smooth.areas.sum() - 1:+.0%} area against smooth")
+voxels_cm3 = patch.voxels.sum() * np.prod(patch.spacing) / 1000
+print(f"volume: voxels {voxels_cm3:.2f} cm3, raw {raw.volume / 1000:.2f} cm3")
+
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
@@ -81,7 +93,8 @@ pictures.picture(
 #
 # Stairs also add area, however fine the voxels are: the faces of cubes add 41 % on a slope of 45 degrees. Marching
 # cubes cuts the corners of the steps, so it adds nothing at 45 degrees and 8 % on a slope of 1 in 2. Flat voxels do
-# it worse: here raw is 11 % more than smooth. Volume has no such flaw.
+# it worse: here raw is 11 % more than smooth. Volume has no such flaw: the raw surface holds 16.89 of the voxels'
+# 16.99 cm3.
 #
 # </details>
 #
@@ -106,18 +119,25 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 widgets.surface(patch)
 
 # %% tags=["nbval-check-output"]
+areas = {}
 for steps in (0, 1, 5, 10, 24, 200):
     after = surface_reconstruction.extract_surface(patch, n_steps=steps)
+    areas[steps] = after.areas.sum()
     moved = surface_reconstruction.measure_deviation(raw, after)
     print(
-        f"{steps:3} steps: area {after.areas.sum() / 100:.2f} cm2, moved {moved.mean_mm:.2f} mm"
+        f"{steps:3} steps: area {areas[steps] / 100:.2f} cm2, "
+        f"moved {moved.mean_mm:.2f} mm, {moved.max_mm:.2f} at most"
     )
+for steps in (10, 24):
+    share = (areas[0] - areas[steps]) / (areas[0] - areas[200])
+    print(f"{steps} steps do {share:.0%} of what 200 do")
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
-# About ten steps bring most of it, and two hundred hardly more than the default 24. (0 steps already put the vertices
+# About ten steps bring most of it: 83 % of what two hundred bring, and the default 24 bring 94 %. After that the
+# vertices still creep (0.51 to 0.61 mm on average), with little gain. (0 steps already put the vertices
 # between the voxels by distance; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
 # clipped to its box of half a voxel in every step.
 #
@@ -162,6 +182,7 @@ folder = classroom.scratch_folder()
 for path in cn.save(made, folder):
     print(path.name)
 size = (folder / "prosthesis.stl").stat().st_size
+assert size == 84 + 50 * len(made.mesh.faces)
 print(f"prosthesis.stl: {size} bytes = 84 + 50 x {len(made.mesh.faces)} faces")
 
 # %% [markdown]

@@ -43,7 +43,7 @@ def test_own_catalogue_says_what_it_should(name):
         (lambda *a: 1 / 0, "ZeroDivisionError"),
         (lambda: 1, "TypeError"),
         (lambda *a: "text", "right form"),
-        (lambda *a: np.full(7, np.nan), "right form"),
+        (lambda *a: np.full(7, np.nan), "NaN"),
         (lambda *a: {"a": object()}, "right form"),
     ],
     ids=["none", "number", "nothing", "fails", "arguments", "text", "nan", "object"],

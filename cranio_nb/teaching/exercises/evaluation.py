@@ -98,6 +98,19 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p, n, o: _mirrored(p, n, o) - o,
                 "Measured from the origin and left there: take the steps off the points, not off points - origin.",
             ),
+            (
+                lambda p, n, o: p - 2 * np.abs((p - o) @ n)[:, None] * n,
+                "The distance has a sign, which says on which side a point lies: without abs it turns back of itself.",
+            ),
+            (
+                lambda p, n, o: np.flip(p, axis=0),
+                "np.flip turns the order of the points round; their places stay what they were.",
+            ),
+            (
+                lambda p, n, o: np.flip(p, axis=1),
+                "np.flip swaps x and z; a mirror image keeps the axes and changes what runs along the normal.",
+            ),
+            (lambda p, n, o: np.flip(p), "np.flip turns arrays round, it knows of no plane: measure from it."),
             (lambda p, n, o: p * [-1, 1, 1], "This mirrors at x = 0; the head stands aside and leans."),
             (lambda p, n, o: 2 * o - p, "This is a point reflection: only the part along the normal may change sign."),
         ),

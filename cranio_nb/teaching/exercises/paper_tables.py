@@ -18,11 +18,16 @@ def _records():
         entry(21, "balloon", [8.5, 12.0], [44, 61]),
         entry(24, "balloon", [11.0, 20.5], [102, 88]),
     ]
-    return [(slices, "theta0", 0), (slices, "theta0", 1), (slices, "n_iter", 0)]
+    # an answer that ignores key or side is right once at most
+    return [(slices, "theta0", 1), (slices, "n_iter", 1), (slices, "n_iter", 0)]
+
+
+def _has(entry):
+    return entry["status"] == "balloon"
 
 
 def _values(slices, key, side):
-    return [s[key][side] for s in slices if s["status"] == "balloon"]
+    return [s[key][side] for s in slices if _has(s)]
 
 
 def _range(slices, key, side):
@@ -30,7 +35,7 @@ def _range(slices, key, side):
 
 
 def _arcs():
-    return [(50.0, 75.0), (20.0, 75.0), (90.0, 80.0)]
+    return [(50.0, 75.0), (20.0, 75.0), (70.0, 80.0)]
 
 
 EXERCISES: dict[str, Exercise] = {
@@ -47,6 +52,14 @@ EXERCISES: dict[str, Exercise] = {
                 "Slices filled by the hull have no balloon: leave them out.",
             ),
             (lambda s, k, i: _range(s, k, 1 - i), "Outer is side 0, inner is side 1."),
+            (lambda s, k, i: _range(s, k, 0), "This is the outer side whatever `side` says: take s[key][side]."),
+            (lambda s, k, i: _range(s, k, 1), "This is the inner side whatever `side` says: take s[key][side]."),
+            (lambda s, k, i: _range(s, "theta0", i), "This is theta0 whatever `key` says: take s[key][side]."),
+            (lambda s, k, i: _range(s, "n_iter", i), "This is n_iter whatever `key` says: take s[key][side]."),
+            (
+                lambda s, k, i: (np.min([x[k] for x in s if _has(x)]), np.max([x[k] for x in s if _has(x)])),
+                "Both sides are thrown together: take s[key][side].",
+            ),
             (lambda s, k, i: _range(s, k, i)[::-1], "The smallest comes first."),
             (
                 lambda s, k, i: (_values(s, k, i)[0], _values(s, k, i)[-1]),
@@ -74,7 +87,7 @@ EXERCISES: dict[str, Exercise] = {
         mistakes=(
             (lambda c, r: np.arcsin(c / 2 / r), "This is in radians; the paper's tables are in degrees."),
             (
-                lambda c, r: np.degrees(np.arcsin(min(c / r, 1))),
+                lambda c, r: np.degrees(np.arcsin(c / r)),
                 "Half the chord belongs to the right angle: chord / 2.",
             ),
             (
@@ -91,7 +104,7 @@ EXERCISES: dict[str, Exercise] = {
             "sin theta = (chord / 2) / radius.",
             "np.degrees(np.arcsin(chord / 2 / radius))",
         ),
-        praise="angles say how wide a gap was.",
+        praise="with the radius, an angle says how wide a gap was.",
     ),
 }
 """The exercises of lesson 10, by number."""

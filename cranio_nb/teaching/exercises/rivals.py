@@ -15,17 +15,30 @@ def _pairs():
     found = []
     for normal, point in (
         ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
-        ([1.0, 0.0, 0.0], [2.3, 0.0, 0.0]),
         ([0.96, 0.28, 0.0], [2.3, -6.1, 40.0]),
     ):
         n = np.array(normal)
         found.append((a, a - 2 * ((a - point) @ n)[:, None] * n))
-    return found
+    # many pairs with errors of measurement, which add up to nothing: the first pair alone is 4 mm off
+    grid = np.stack(np.meshgrid([40.0, 55.0, 70.0], [-60.0, -20.0, 20.0, 60.0], [-20.0, 20.0, 60.0]), axis=-1)
+    many = grid.reshape(-1, 3)
+    errors = np.full_like(many, -4.0 / (len(many) - 1))
+    errors[0] = 4.0
+    return [*found, (many, many - 2 * ((many - point) @ n)[:, None] * n + errors)]
 
 
 def _plane(a, b):
     across = (a - b).sum(axis=0)
     return across / np.linalg.norm(across), (a + b).mean(axis=0) / 2
+
+
+def _first(a, b):
+    return (a[0] - b[0]) / np.linalg.norm(a[0] - b[0]), (a[0] + b[0]) / 2
+
+
+def _with_point(point, sentence):
+    """A wrong point, with the normal of all pairs or of the first."""
+    return tuple(((lambda a, b, way=way: (way(a, b)[0], point(a, b))), sentence) for way in (_plane, _first))
 
 
 def _plane_error(answer, right):
@@ -66,27 +79,36 @@ EXERCISES: dict[str, Exercise] = {
         right=_plane,
         error=_plane_error,
         unit="mm",
-        tolerance=1e-6,
+        tolerance=0.2,
         form="two arrays of 3 numbers: the unit normal and a point",
         mistakes=(
             (lambda a, b: ((a - b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a[0] + b[0]) / 2), _LONG),
-            (
-                lambda a, b: (_plane(a, b)[0], a.mean(axis=0)),
+            *_with_point(
+                lambda a, b: a.mean(axis=0),
                 "The plane passes through the points themselves: it lies half-way between the two of a pair.",
             ),
-            (
-                lambda a, b: (_plane(a, b)[0], (a + b).mean(axis=0)),
+            *_with_point(
+                lambda a, b: (a + b).mean(axis=0),
                 "The point is twice as far out: half-way between the two of a pair is (a + b) / 2.",
+            ),
+            *_with_point(
+                lambda a, b: np.zeros(3),
+                "The plane need not pass through 0, 0, 0: a point half-way between a pair lies on it.",
+            ),
+            (_first, "This rests on the first pair only, and a pair has its error: take all of them together."),
+            (
+                lambda a, b: (_first(a, b)[0], _plane(a, b)[1]),
+                "The normal rests on the first pair only, and a pair has its error: take all of them together.",
+            ),
+            (
+                lambda a, b: (_plane(a, b)[0], _first(a, b)[1]),
+                "The point rests on the first pair only, and a pair has its error: take the mean of all.",
             ),
             (
                 lambda a, b: (np.array([1.0, 0.0, 0.0]), (a + b).mean(axis=0) / 2),
                 "This takes x for the normal; the head leans: the normal runs from one point of a pair to the other.",
-            ),
-            (
-                lambda a, b: (_plane(a, b)[0], np.zeros(3)),
-                "The plane need not pass through 0, 0, 0: a point half-way between a pair lies on it.",
             ),
         ),
         hints=(

@@ -1,6 +1,7 @@
 """Typical wrong answers of lesson 08 get the hint that helps."""
 
-from lesson_answers import hint_tests
+import pytest
+from lesson_answers import hint_tests, judge
 
 from cranio_nb.teaching.exercises.rivals import EXERCISES
 
@@ -12,6 +13,9 @@ WRONG = {
         ("n = a[0] - b[0]; return n / np.linalg.norm(n), a.mean(axis=0)", "half-way"),
         ("return np.array([1, 0, 0]), (a.mean(axis=0) + b.mean(axis=0)) / 2", "head leans"),
         ("n = b[0] - a[0]; return n / np.linalg.norm(n), np.zeros(3)", "0, 0, 0"),
+        ("n = a[0] - b[0]; return n / np.linalg.norm(n), (a[0] + b[0]) / 2", "first pair only"),
+        ("n = a[0] - b[0]; return n / np.linalg.norm(n), (a + b).mean(axis=0) / 2", "normal rests on the first"),
+        ("n = (a - b).sum(axis=0); return n / np.linalg.norm(n), (a[0] + b[0]) / 2", "point rests on the first"),
     ],
     "8.2": [
         ("return h", "the largest"),
@@ -27,3 +31,16 @@ WRONG = {
 }
 
 test_every_exercise_has_wrong_answers, test_a_typical_wrong_answer_gets_its_hint = hint_tests(WRONG, EXERCISES)
+
+
+@pytest.mark.parametrize(
+    "normal",
+    [
+        "n = (b - a).mean(axis=0)",
+        "d = a - b; n = (d / np.linalg.norm(d, axis=1, keepdims=True)).mean(axis=0)",
+        "n = np.linalg.svd(a - b)[2][0]",
+    ],
+)
+def test_every_fair_mean_of_noisy_pairs_is_right(normal):
+    body = f"{normal}; return n / np.linalg.norm(n), (a.mean(axis=0) + b.mean(axis=0)) / 2"
+    assert judge("8.1", body).passed
