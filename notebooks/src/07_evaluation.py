@@ -192,9 +192,8 @@ for percent in (0, 2, 4, 6):
     if percent:
         found = cn.design(skull, openings, method="reflection", fit_rim=False)
     s = cn.score(found.patch, truth, skull)
-    print(
-        f"sound half {percent} % wider: Dice {s.dice:.3f}, HD95 {s.hd95:.2f}, mean {s.assd:.2f} mm"
-    )
+    ends = f"HD95 {s.hd95:.2f}, mean {s.assd:.2f} mm"
+    print(f"sound half {percent} % wider: Dice {s.dice:.3f}, {ends}")
 
 # %% [markdown]
 # Two errors were in the plain mirror, and they are of different kinds.

@@ -84,7 +84,7 @@ pictures.picture(fig, alt, line)
 # Now our own hole, and three burr holes. How large are they, what does the sphere foretell, and what does the hull do?
 
 
-# %% tags=["nbval-check-output"]
+# %%
 def widths(missing, direction):
     """Length and width of the missing bone across the direction it is looked at, mm."""
     points = missing.to_world(np.argwhere(missing.voxels))
@@ -101,6 +101,8 @@ for seed in range(3):
     (small,) = cn.find_openings(drilled)
     closed = cn.design(drilled, [small], method="hull")
     holes[f"burr hole {seed}"] = burr, drilled, small, closed
+
+# %% tags=["nbval-check-output"]
 print("               size (mm)   sphere   Dice of the hull")
 for name, (one, skull, opening, closed) in holes.items():
     a, b = widths(one.truth, opening.direction)

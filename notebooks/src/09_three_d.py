@@ -140,9 +140,8 @@ pictures.picture(
 print("in the middle of the gap, over 200 draws (mm):")
 for name, off in bridges.items():
     at = off[50]
-    print(
-        f"{name:20} mean {at.mean():+.2f}, spread {at.std():.2f}, {at.min():+.2f} to {at.max():+.2f}"
-    )
+    ends = f"{at.min():+.2f} to {at.max():+.2f}"
+    print(f"{name:20} mean {at.mean():+.2f}, spread {at.std():.2f}, {ends}")
 
 # %% [markdown]
 # <details>

@@ -105,7 +105,7 @@ for i, (side, rows) in enumerate(paper_tables.PAPER_BALLOONS.items()):
 # May one read the authors' opening off their angles in this way? Let us try it on our head, whose gaps are known. L
 # is the chord between the two ends of the balloon; these lie `skip` inside the bone, so the true gap is shorter.
 
-# %% tags=["nbval-check-output"]
+# %%
 centre = bone.to_voxel(openings[0].head_centre)[1:]
 rows = []
 for one in paper.working[0].slices:
@@ -116,6 +116,8 @@ for one in paper.working[0].slices:
         lean = (start + np.pi - end) / 2  # of both ends
         gap = np.linalg.norm(truth[0][-1] - truth[0][0]) * px
         rows.append((np.degrees(lean), 2 * 80 * np.sin(lean), chord.length * px, gap))
+
+# %% tags=["nbval-check-output"]
 wide = np.array([row for row in rows if row[3] > 50])
 wide = np.column_stack([wide, wide[:, 2] / wide[:, 1] * 80])
 names = (
@@ -252,15 +254,16 @@ for whose, row in (
     ("paper", printed["You et al."]),
 ):
     print(f"{whose}, in voxels: mean / max = {row.mean / row.max:.2f}")
+
+# %% tags=["nbval-check-output"]
 # the same two surfaces, counted in voxels of other shapes
 film, bone_side = (one.surface(cn.mesh.OUTER) for one in (designs["You et al."], true))
 for wide_mm, high_mm in ((0.45, 0.45), (0.9, 2.5), (0.45, 2.5)):
     size = np.array([wide_mm, wide_mm, high_mm])
     counted = cn.mesh.Mesh(bone_side.vertices / size, bone_side.faces)
     off = mesh_distances.surface_distance(film.vertices / size, counted)
-    print(
-        f"voxels {wide_mm} mm wide and {high_mm} mm high: mean / max = {off.mean() / off.max():.2f}"
-    )
+    shape = f"{wide_mm} mm wide and {high_mm} mm high"
+    print(f"voxels {shape}: mean / max = {off.mean() / off.max():.2f}")
 
 # %% [markdown]
 # <details>
@@ -365,7 +368,7 @@ for ax, i, letter in zip(panels, picks, "abcd", strict=True):
     title = f"({letter}) slice {plane}"
     pictures.show_mask(ax, made.patch.voxels[plane], px=px, colour="patch", title=title)
     pictures.zoom(ax, [np.argwhere(lost[plane])], px=px, margin=6 if letter == "d" else 40)
-alt = "Patches in blue over the missing bone in orange-red: good, fair, and next to none, with a zoom."
+alt = "Patches in blue over the missing bone, orange-red: good, fair, next to none, zoomed."
 pictures.picture(fig, alt, "Dice " + ", ".join(f"{dice[i]:.2f}" for i in picks[:3]))
 
 # %% tags=["nbval-check-output"]
@@ -471,9 +474,8 @@ snaxels = {
     "by hand": (by_hand, panel.values["n_snaxels"] - 1),
 }
 for name, (k, n) in snaxels.items():
-    print(
-        f"{name:17} k {k:.3f} mm, N {n}: k N^2 = {k * n**2:3.0f} mm, k N^2 / 8 = {k * n**2 / 8:4.1f} mm"
-    )
+    rise = f"k N^2 = {k * n**2:3.0f} mm, k N^2 / 8 = {k * n**2 / 8:4.1f} mm"
+    print(f"{name:17} k {k:.3f} mm, N {n}: {rise}")
 
 # %% [markdown]
 # <details>

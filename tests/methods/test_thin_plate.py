@@ -142,7 +142,7 @@ def test_the_plane_of_symmetry_is_told(made):
 
 
 def test_without_a_plane_of_symmetry_the_plate_is_bent_all_the_same(skull, made, monkeypatch):
-    def refuse(bone, centre):
+    def refuse(*_):
         raise InputRefused("NoSymmetry", "Too little of the vault has a counterpart.")
 
     monkeypatch.setattr(symmetry, "find_symmetry_plane", refuse)
