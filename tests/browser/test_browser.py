@@ -95,6 +95,7 @@ def test_sliders_move_pictures_the_balloon_plays_and_the_scene_is_there(open_not
 
     box = panel(page, "pressure (px")
     status = box.locator("[role=status]").first
+    press(box, re.compile("^step$"), "End")
     press(box, re.compile("^step$"), "Home")
     assert until(lambda: status.inner_text().startswith("Step 0 of ")), status.inner_text()
     still = shot(box.locator("img").first)

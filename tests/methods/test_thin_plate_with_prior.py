@@ -30,7 +30,7 @@ def test_a_prior_that_does_not_reach_the_hole_changes_nothing(learned, skull, tm
     bone = skull("burr_hole")
     (tmp_path / "prior.npz").write_bytes(pack_prior(learned))
 
-    def nowhere(prior, bone, radius_map):
+    def nowhere(prior, bone, radius_map, *_):
         nothing = np.full(radius_map.hole.shape, np.nan)
         return Prediction(outer=nothing, inner=nothing, frame=None)
 

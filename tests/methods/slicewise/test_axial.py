@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-import cranio_nb as cn
+from cranio_nb.methods.catalogue import COMMON, default_options, preset_options
 from cranio_nb.methods.slicewise.axial import by_skeleton, within_image
 from cranio_nb.methods.slicewise.inflate import carry
+from cranio_nb.methods.slicewise.method import pieces
 from cranio_nb.methods.slicewise.slices import SliceResult
 
 
@@ -32,9 +33,13 @@ def test_its_neighbours_carry_such_a_slice():
 
 @pytest.mark.parametrize("pressure_mm", [5.0, 200.0])
 def test_a_design_holds_no_balloon_that_ran_away(pressure_mm, skull, openings):
-    """Far too strong a pressure blows balloons out of the image; the patch stays in it, and the record says why."""
-    options = {"preset": "paper", "pressure_mm": pressure_mm}
-    made = cn.design(skull("unilateral"), openings("unilateral"), **options)
+    """Far too strong a pressure blows balloons out of the image; the patch stays in it, and the record says why.
+
+    A design refuses such a pressure; other inputs may drive a balloon as far.
+    """
+    bone = skull("unilateral")
+    options = default_options("slicewise") | preset_options("slicewise", "paper", bone) | {"pressure_mm": pressure_mm}
+    (made,) = pieces(bone, openings("unilateral"), **{k: v for k, v in options.items() if k not in COMMON})
     told = made.record["slices"]
     assert any("out of the image" in s["reason"] for s in told)
     assert all(("balloon ran" in s["reason"]) <= (s["status"] in ("skipped", "carried")) for s in told)
