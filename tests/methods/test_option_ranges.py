@@ -11,13 +11,12 @@ import cranio_nb as cn
 from cranio_nb.errors import CranioError, InputRefused
 from cranio_nb.methods.catalogue import METHODS, check_options, default_options, options_of, preset_options
 
-SLOW = ("dnurbs", "free_weights")  # minutes on a fine sheet; test_method.py runs them on a coarse one
 ENDS = [
     (method, name, end)
     for method in METHODS
     for name, option in options_of(method).items()
     for end in ((False, True) if option.kind == "true or false" else (option.low, option.high))
-    if option.kind != "text" and (method, name) != SLOW
+    if option.kind != "text"
 ]
 
 
