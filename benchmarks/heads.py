@@ -7,7 +7,8 @@ and roll within 30 degrees, any turn, every tenth head upside down, every tenth 
 nothing, or one or two things around the head; how far the scan reaches. Seeds below 10000 were looked at while the
 rules were made. Outcomes: "right" (as many openings designed as holes, each over its own hole; intact: none),
 "doubtful" (what is missed is listed), "refused" (named by its code), "silent" (a hole missed without a word), "false"
-(an opening designed where there is no hole).
+(an opening designed where there is no hole), "count" (each hole found, but in another number of openings), "not drawn"
+(the seed's holes do not fit beside each other).
 """
 
 from __future__ import annotations
