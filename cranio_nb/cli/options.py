@@ -16,7 +16,7 @@ import click
 
 from ..errors import CannotWrite, InputRefused
 from ..methods.catalogue import check_options
-from ..option import THRESHOLD, Option
+from ..options import THRESHOLD, Option
 from ..readers import ALLOWANCES
 
 
