@@ -1,11 +1,7 @@
 """The structural figures on a tiny made-up package whose figures are counted by hand."""
 
-import importlib
-from pathlib import Path
-
 import pytest
-
-FOLDER = Path(__file__).parent.parent / "benchmarks"
+from benchmark_scripts import script
 
 FILES = {
     "cranio_nb/__init__.py": '"""Nothing here."""\n',
@@ -113,11 +109,9 @@ def design(x):
 }
 
 
-@pytest.fixture(scope="module")
-def structure():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(FOLDER))
-        yield importlib.import_module("structure")
+structure = script("structure")
+structure_source = script("structure_source")
+structure_graphs = script("structure_graphs")
 
 
 @pytest.fixture(scope="module")
@@ -170,26 +164,26 @@ def test_what_stands_behind_the_figures_is_named(shown):
     assert behind["longest bodies"][0].split() == ["5", "cranio_nb.ground:half"]
 
 
-def test_comments_and_lines_of_a_module(structure, checkout):
-    module = structure.read_modules(checkout)["cranio_nb.ground"]
+def test_comments_and_lines_of_a_module(structure, structure_source, checkout):
+    module = structure_source.read_modules(checkout)["cranio_nb.ground"]
     assert structure.comments({"ground": module}) == (2, 2)
     assert len(module.code_lines) == 2 + 6 + 3 + 1
 
 
-def test_calls_follow_names_modules_and_what_a_package_gives_on(structure, checkout):
-    own = {name: m for name, m in structure.read_modules(checkout).items() if name.startswith("cranio_nb")}
-    graph = structure.call_graph(own)
+def test_calls_follow_names_modules_and_what_a_package_gives_on(structure_source, checkout):
+    own = {name: m for name, m in structure_source.read_modules(checkout).items() if name.startswith("cranio_nb")}
+    graph = structure_source.call_graph(own)
     assert graph["cranio_nb.methods.a:design"] == {"cranio_nb.stages.cutting:cut", "cranio_nb.methods.shared:share"}
     assert graph["cranio_nb.stages.cutting:Knife.edge"] == {"cranio_nb.stages.cutting:Knife._grind"}
     assert graph["cranio_nb.stages.cutting:Knife._grind"] == {"cranio_nb.ground:half"}
     assert graph["cranio_nb.stages.lazy:loose"] == {"cranio_nb.stages.cutting:cut"}
-    assert structure.call_graph(own, lazy=False)["cranio_nb.stages.lazy:loose"] == set()
+    assert structure_source.call_graph(own, lazy=False)["cranio_nb.stages.lazy:loose"] == set()
 
 
-def test_chains_take_a_circle_as_one(structure):
+def test_chains_take_a_circle_as_one(structure_graphs):
     graph = {"a": {"b", "d"}, "b": {"c"}, "c": {"b", "d"}, "d": {"e"}, "e": set(), "alone": set()}
-    assert structure.longest_chain(graph) in (["a", "b = c", "d", "e"], ["a", "c = b", "d", "e"])
-    assert [sorted(part) for part in structure.circles(graph)] == [["b", "c"]]
+    assert structure_graphs.longest_chain(graph) in (["a", "b = c", "d", "e"], ["a", "c = b", "d", "e"])
+    assert [sorted(part) for part in structure_graphs.circles(graph)] == [["b", "c"]]
 
 
 @pytest.mark.parametrize(("part", "value"), [(0.5, 5), (0.9, 9), (0.91, 10), (1.0, 10), (0.01, 1)])

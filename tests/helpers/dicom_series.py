@@ -114,20 +114,6 @@ def save(folder: Path, datasets: Iterable[Dataset], *, syntax: str | None = None
     return folder
 
 
-def edit(at: int | slice, **values: object) -> Callable[[list[Dataset]], None]:
-    """An edit of a series: set elements of one or more slices; None deletes."""
-
-    def change(datasets: list[Dataset]) -> None:
-        for ds in [datasets[at]] if isinstance(at, int) else datasets[at]:
-            for name, value in values.items():
-                if value is None:
-                    del ds[name]
-                else:
-                    setattr(ds, name, value)
-
-    return change
-
-
 def refusal(folder: Path, **options: object) -> InputRefused:
     """The refusal of a folder; its text must give nothing away."""
     with pytest.raises(InputRefused) as caught:
@@ -144,22 +130,6 @@ def codes(report: LoadReport) -> set[str]:
     """The findings' codes; whatever they hold can be stored as JSON."""
     json.dumps([finding.values for finding in report.findings], allow_nan=False)
     return {finding.code for finding in report.findings}
-
-
-def drop(*indices: int) -> Callable[[list[Dataset]], None]:
-    def change(datasets: list[Dataset]) -> None:
-        for index in sorted(indices, reverse=True):
-            del datasets[index]
-
-    return change
-
-
-def chain(*edits: Callable[[list[Dataset]], None]) -> Callable[[list[Dataset]], None]:
-    def change(datasets: list[Dataset]) -> None:
-        for one in edits:
-            one(datasets)
-
-    return change
 
 
 def truth(orientation: object = AXIAL) -> np.ndarray:
