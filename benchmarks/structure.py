@@ -48,10 +48,10 @@ def floors_named(checkout: Path) -> list[str] | None:
 
 
 def upward_imports(graph: Graph, floors: Sequence[str]) -> list[str]:
-    """Imports within the package from a lower floor to a higher one; its `__init__` stands above all."""
+    """Imports within the package from a lower floor to a higher one; its `__init__` and `__main__` stand above all."""
 
     def height(name: str) -> int:
-        if name == PACKAGE:
+        if name in (PACKAGE, f"{PACKAGE}.__main__"):
             return len(floors)
         return floors.index(room_of(name) if room_of(name) in floors else "nouns")
 
