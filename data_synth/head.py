@@ -124,8 +124,8 @@ class HeadShape:
 
         Parameters
         ----------
-        offsets : array_like, shape (..., 3)
-            Points minus the centre, mm.
+        offsets
+            As for `norm`.
 
         Returns
         -------

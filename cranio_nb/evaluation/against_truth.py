@@ -96,7 +96,7 @@ def measure_against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCh
     made, true : Prosthesis
         With patches on one grid.
     bone : Volume
-        The skull with the hole.
+        As for `check_truth`.
 
     Returns
     -------

@@ -18,6 +18,7 @@ from cranio_nb.readers import LoadReport, read_ct
 from cranio_nb.readers.dicom.parse import parse_file
 from cranio_nb.readers.dicom.slice_header import SliceHeader, read_headers
 from cranio_nb.volume import Volume
+from data_synth.fault_series import Edit
 
 CT_IMAGE = "1.2.840.10008.5.1.4.1.1.2"
 AXIAL = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -112,6 +113,13 @@ def save(folder: Path, datasets: Iterable[Dataset], *, syntax: str | None = None
             path = folder / f"image{number:04d}.dcm"
             pydicom.dcmwrite(path, ds, force_encoding=True, **order)
     return folder
+
+
+def save_changed(folder: Path, change: Edit) -> Path:
+    """A folder with the series of the head after an edit."""
+    datasets = series(head())
+    change(datasets)
+    return save(folder / "scan", datasets)
 
 
 def refusal(folder: Path, **options: object) -> InputRefused:

@@ -13,8 +13,7 @@ from dicom_series import (
     codes,
     head,
     refusal,
-    save,
-    series,
+    save_changed,
     set_pixels,
     shift_hu,
 )
@@ -140,9 +139,7 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_fault_is_refused(name: str, tmp_path: Path) -> None:
     change, code = REFUSED[name]
-    datasets = series(head())
-    change(datasets)
-    assert refusal(save(tmp_path / "scan", datasets)).code == code
+    assert refusal(save_changed(tmp_path, change)).code == code
 
 
 def duplicate(datasets: list[Dataset]) -> None:
@@ -183,8 +180,6 @@ UNCHANGED = {
 @pytest.mark.parametrize("name", UNCHANGED)
 def test_odd_series_is_read_exactly_and_reported(name: str, tmp_path: Path) -> None:
     change, code = UNCHANGED[name]
-    datasets = series(head())
-    change(datasets)
-    volume, report = read_ct(save(tmp_path / "scan", datasets))
+    volume, report = read_ct(save_changed(tmp_path, change))
     assert code in codes(report)
     np.testing.assert_array_equal(volume.voxels, head())

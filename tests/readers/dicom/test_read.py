@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import ORIGIN, SHAPE, SPACING, STEP, assert_same_places, head, save, series, truth
+from dicom_series import ORIGIN, SHAPE, SPACING, STEP, assert_same_places, head, save, save_changed, series, truth
 
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import same_grid
@@ -100,9 +100,7 @@ def test_two_readings_are_the_same(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("stated", "warned"), [(12.0, True), (-12.0, True), (0.0, False), (0.5, False)])
 def test_a_tilt_that_only_the_tag_states_is_a_warning(stated: float, warned: bool, tmp_path: Path) -> None:
-    datasets = series(head())
-    set_elements(slice(None), GantryDetectorTilt=stated)(datasets)
-    _, report = read_ct(save(tmp_path / "scan", datasets))
+    _, report = read_ct(save_changed(tmp_path, set_elements(slice(None), GantryDetectorTilt=stated)))
     assert ("TiltUnclear" in {f.code for f in report.findings}) == warned
 
 

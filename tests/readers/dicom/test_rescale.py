@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dicom_series import codes, head, save, series, set_pixels
+from dicom_series import codes, head, save, save_changed, series, set_pixels
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -107,9 +107,7 @@ def test_padding_becomes_air_with_its_tag_and_without(tmp_path: Path) -> None:
 
 
 def test_padding_value_within_the_head_is_ignored(tmp_path: Path) -> None:
-    datasets = series(head())
-    set_elements(EVERY, PixelPaddingValue=1024 + 900)(datasets)
-    volume, _ = read_ct(save(tmp_path / "scan", datasets))
+    volume, _ = read_ct(save_changed(tmp_path, set_elements(EVERY, PixelPaddingValue=1024 + 900)))
     np.testing.assert_array_equal(volume.voxels, head())
 
 
