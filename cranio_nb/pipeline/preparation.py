@@ -15,7 +15,7 @@ from ..vault.opening_choice import JudgedOpening, choose_openings
 from ..vault.opening_size import OpeningSize
 from ..vault.remarks import orientation_remarks, thickness_remarks
 from ..volume import Volume, same_grid
-from .survey import survey_scan
+from .survey import Survey, survey_scan
 
 Progress = Callable[[str, float], None]
 
@@ -140,14 +140,39 @@ def prepare(
     seen = survey_scan(scan, threshold)
     said = (*thickness_remarks(load.spacing[0]), *orientation_remarks(seen.frame))
     load = replace(load, findings=(*load.findings, *said))
-    chosen = choose_openings(seen.found, opening)
-    closed = chosen if planes is None else within_planes(chosen, planes)
-    for one in closed:
-        check_margin(one.opening.sheet, f"Opening {one.number}")
+    closed = openings_to_close(seen, opening, planes)
     numbers = {one.number for one in closed}
     left_open = tuple(one for one in seen.found if one.number not in numbers)
     clock.lap("bone and openings")
     return Prepared(load, seen.bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
+
+
+def openings_to_close(
+    seen: Survey, numbers: Collection[int] = (), planes: tuple[int, int] | None = None
+) -> tuple[JudgedOpening, ...]:
+    """The openings of a skull that a method gets.
+
+    Parameters
+    ----------
+    seen : Survey
+    numbers, planes
+        As `opening` and `planes` of `prepare`.
+
+    Returns
+    -------
+    tuple of JudgedOpening
+        Largest first, none of them beside the border of the image.
+
+    Raises
+    ------
+    InputRefused, NoOpening
+        As `prepare`.
+    """
+    chosen = choose_openings(seen.found, numbers)
+    closed = chosen if planes is None else within_planes(chosen, planes)
+    for one in closed:
+        check_margin(one.opening.sheet, f"Opening {one.number}")
+    return closed
 
 
 def within_planes(openings: tuple[JudgedOpening, ...], planes: tuple[int, int]) -> tuple[JudgedOpening, ...]:
