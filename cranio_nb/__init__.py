@@ -31,6 +31,7 @@ the files here   the nouns: `errors`, `grid`, `volume`, `mesh`, `curves`, `openi
 `drawing`        pictures and 3-D scenes
 `pipeline`       scan -> design, trial, comparison
 `output`         files and pages
+`study`          cases x methods x parameters, on one machine or many
 `teaching`       lessons, panels, exercises
 `cli`            the command line
 ===============  =====================================================================================================

@@ -26,6 +26,7 @@ FLOORS = [  # a folder imports only what stands above it in this list; the nouns
     "drawing",
     "pipeline",
     "output",
+    "study",
     "teaching",
     "cli",
 ]

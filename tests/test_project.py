@@ -95,7 +95,7 @@ def distributions(modules):
 
 class TestDependencies:
     def test_what_is_imported_is_declared_and_what_is_declared_is_imported(self):
-        optional = {name_of(r) for extra in ("lab", "view") for r in EXTRAS[extra]}
+        optional = {name_of(r) for extra in ("lab", "view", "study") for r in EXTRAS[extra]}
         core = {name_of(r) for r in CORE}
         used = distributions([*imported("cranio_nb"), *imported("data_synth")])
         assert used <= core | optional

@@ -19,6 +19,7 @@ _NEEDED = tuple(
 )
 _OPTIONAL = {
     "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
+    "study": ("distributed", "pyarrow", "bokeh"),
     "view": ("pyvista", "vtk", "trame-pyvista", "aiohttp"),
 }
 _MIN_MEMORY_GB = 2.0

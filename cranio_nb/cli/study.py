@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -132,12 +133,12 @@ def _read(path: Path) -> tuple[Plan, dict[str, Any]]:
 def _share(text: str | None) -> tuple[int, int]:
     """The numbers of ``I/N``."""
     try:
-        number, of = (int(part) for part in (text or "1/1").split("/"))
+        share, of = (int(part) for part in (text or "1/1").split("/"))
     except ValueError:
-        number = of = 0
-    if not 1 <= number <= of <= 1_000_000:
+        share = of = 0
+    if not 1 <= share <= of <= 1_000_000:
         raise click.BadParameter("two whole numbers I/N are wanted, I from 1 to N.", param_hint="--part")
-    return number, of
+    return share, of
 
 
 @contextmanager
@@ -164,7 +165,7 @@ def _progress() -> Iterator[Callable[[Tally], None]]:
             nonlocal tenth
             share = (tally.before + tally.done) / max(tally.total, 1)
             bar(_words(tally), share)
-            if not click.get_text_stream("stderr").isatty() and int(10 * share) > tenth:
+            if not sys.stderr.isatty() and int(10 * share) > tenth:
                 tenth = int(10 * share)
                 click.echo(_words(tally), err=True)
 

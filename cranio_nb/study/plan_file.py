@@ -75,9 +75,7 @@ def plan_of(words: Mapping[str, Any]) -> Plan:
     """
     if strange := sorted(set(words) - _WORDS):
         raise bad_plan(f"{strange[0]!r} means nothing", f"use {', '.join(sorted(_WORDS))} only")
-    cases: list[Case] = []
-    for group in _typed(words, "cases", list, []):
-        cases += _group(group, _typed(words, "folder", str, ""))
+    cases = cases_of(words)
     methods = _typed(words, "methods", dict, {})
     settings: list[Setting] = []
     random, seed = _typed(words, "random", int, 0), _typed(words, "seed", int, 0)
@@ -88,6 +86,27 @@ def plan_of(words: Mapping[str, Any]) -> Plan:
     if not cases or not settings:
         raise bad_plan(f"there are no {'methods' if cases else 'cases'}", "name one at least")
     return Plan(tuple(cases), tuple(settings))
+
+
+def cases_of(words: Mapping[str, Any]) -> list[Case]:
+    """The cases that a JSON object describes.
+
+    Parameters
+    ----------
+    words : dict
+        As for `plan_of`.
+
+    Returns
+    -------
+    list of Case
+
+    Raises
+    ------
+    InputRefused
+        ``BadPlan``.
+    """
+    folder = _typed(words, "folder", str, "")
+    return [case for group in _typed(words, "cases", list, []) for case in _group(group, folder)]
 
 
 def example(methods: tuple[str, ...]) -> dict[str, Any]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -37,9 +38,11 @@ SCHEMA = pa.schema(
         ("n_openings", pa.int64()),
         *((name, pa.string()) for name in ("status", "code", "message")),
         *((name, pa.float64()) for name in MEASURES),
+        ("written_s", pa.float64()),
     ]
 )
-"""A row: what it is of, what the skull is like (lengths in mm), how it ended, the `MEASURES` in their units."""
+"""A row: what it is of, what the skull is like (lengths in mm), how it ended, the `MEASURES` in their units, and
+when it was written (s since 1970)."""
 Columns = dict[str, NDArray[Any]]
 """Rows as a column for each name: numbers as float64 with nan for none, text as objects with "" for none."""
 PLAN, ROWS = "plan.json", "rows"
@@ -100,7 +103,8 @@ class Store:
         CannotWrite
             If the system refuses; then nothing of them is there.
         """
-        self._write(pa.Table.from_pylist(list(rows), SCHEMA))
+        now = time.time()
+        self._write(pa.Table.from_pylist([row | {"written_s": now} for row in rows], SCHEMA))
 
     def done(self) -> set[str]:
         """Keys of all rows.

@@ -5,6 +5,7 @@ of matplotlib, and no figure touches any global state.
 """
 
 from .axes import DPI, Axes, Figure, colour_bar_figure, colour_scale, new_figure, png, scale_bar
+from .effects import Panel, effects_figure, pair_figure
 from .outlines import line_style, outlines_figure
 from .slices import draw_slice, slice_figure
 from .views import distance_figure, view_figure, views_of
@@ -13,13 +14,16 @@ __all__ = [
     "DPI",
     "Axes",
     "Figure",
+    "Panel",
     "colour_bar_figure",
     "colour_scale",
     "distance_figure",
     "draw_slice",
+    "effects_figure",
     "line_style",
     "new_figure",
     "outlines_figure",
+    "pair_figure",
     "png",
     "scale_bar",
     "slice_figure",

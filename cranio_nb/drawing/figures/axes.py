@@ -47,6 +47,23 @@ def new_figure(width_in: float, height_in: float) -> tuple[Figure, Axes]:
     return figure, axes
 
 
+def laid_out_figure(width_in: float, height_in: float) -> Figure:
+    """An empty figure that makes room for the labels of the axes that it gets.
+
+    Parameters
+    ----------
+    width_in, height_in : float
+        Inches.
+
+    Returns
+    -------
+    Figure
+    """
+    figure = Figure(figsize=(width_in, height_in), dpi=DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
+
+
 def png(figure: Figure) -> bytes:
     """A figure as PNG.
 
