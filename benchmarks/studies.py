@@ -6,8 +6,8 @@
 
 kill: a scheduler and two workers are started as processes of their own, and a study that joins them by address. In the
 middle of it one process gets SIGKILL. Where the study cannot go on it is started again, and then every run must be
-there once, with the measures of a study that nobody disturbed. memory: what each worker held after each run, as a line
-fitted to it. workers: time of the same study with one worker and with two, in turn; a quiet machine is wanted.
+there once, with the measures of a study that nobody disturbed. memory: what one worker holds after each batch, by
+quarters of the study. workers: time of the same study with one worker and with two, in turn; a quiet machine is wanted.
 """
 
 from __future__ import annotations
@@ -154,12 +154,9 @@ def memory(n_runs: int) -> None:
     with tempfile.TemporaryDirectory() as name, dask_workers(n_workers=1) as workers:
         plan = plan_of(plan_words(n_runs))
         run_study(plan, name, workers.executor, progress=lambda _: held.append(_resident(workers)))
-    after = np.array(held[1:])
-    slope = np.polyfit(np.arange(len(after)) * plan.n_runs / len(after), after, 1)[0]
-    half = len(after) // 2
-    print(f"{plan.n_runs} runs: first {after[0]:.0f} MB, most {after.max():.0f} MB, last {after[-1]:.0f} MB")
-    print(f"mean of the first half {after[:half].mean():.1f} MB, of the second half {after[half:].mean():.1f} MB")
-    print(f"slope {1000 * slope:.1f} kB for each run")
+    quarters = [part.mean() for part in np.array_split(np.array(held[1:]), 4)]
+    print(f"{plan.n_runs} runs, MB: at the start {held[0]:.0f}, most {max(held):.0f}, at the end {held[-1]:.0f}")
+    print(f"mean of each quarter: {', '.join(f'{mean:.1f}' for mean in quarters)}")
 
 
 def _resident(workers: Any) -> float:

@@ -7,6 +7,7 @@ judged by the setting that is best on all *other* cases (leave one out).
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..pipeline.compare import MEASURES
-from .sensitivity import parameters
+from .sensitivity import Parameter
 from .store import Columns
 from .summaries import Spread, spread, values
 
@@ -104,7 +105,7 @@ def target_of(columns: Columns) -> str:
     return "dice" if np.isfinite(columns["dice"]).any() else "rim_gap"
 
 
-def best_setting(columns: Columns, key: str) -> Best | None:
+def best_setting(columns: Columns, key: str, varied: Sequence[Parameter] = ()) -> Best | None:
     """The setting with the best mean over all cases.
 
     Parameters
@@ -113,6 +114,8 @@ def best_setting(columns: Columns, key: str) -> Best | None:
         Of one contender.
     key : str
         The measure, one that has a better end.
+    varied : sequence of Parameter
+        Of the same rows: those whose best values for single cases are told.
 
     Returns
     -------
@@ -120,8 +123,11 @@ def best_setting(columns: Columns, key: str) -> Best | None:
         None where no setting has a value.
     """
     names, settings, table = _table(columns, key)
+    # a study may not have ended: cases that most settings have seen, then settings that miss none of these
+    known = np.isfinite(table)
+    table = table[2 * known.sum(axis=1) >= known.sum(axis=1).max(initial=1)]
     seen = np.isfinite(table).sum(axis=0)
-    whole = np.flatnonzero(seen == seen.max(initial=1))  # settings that miss no case that others have
+    whole = np.flatnonzero(seen == seen.max(initial=1))
     if not len(whole):
         return None
     table = table[np.isfinite(table[:, whole]).any(axis=1)][:, whole]
@@ -142,7 +148,7 @@ def best_setting(columns: Columns, key: str) -> Best | None:
         spread(beside, key),
         int((sign * table[:, at] > sign * beside).sum()),
         _held_out(table, sign),
-        _by_case(columns, settings, table, sign),
+        _by_case(columns, varied, settings, table, sign),
     )
 
 
@@ -193,14 +199,18 @@ def _held_out(table: NDArray[np.float64], sign: float) -> float:
 
 
 def _by_case(
-    columns: Columns, settings: list[tuple[str, float | None]], table: NDArray[np.float64], sign: float
+    columns: Columns,
+    varied: Sequence[Parameter],
+    settings: list[tuple[str, float | None]],
+    table: NDArray[np.float64],
+    sign: float,
 ) -> dict[str, tuple[float, float, float]]:
     """Where the settings lie that are best for single cases."""
     winners = [settings[i] for i in np.nanargmax(sign * table, axis=1)]
     heights = [None if np.isnan(h) else float(h) for h in columns["threshold_hu"]]
     row = {one: i for i, one in enumerate(zip(columns["options"], heights, strict=True))}
     found = {}
-    for one in parameters(columns):
+    for one in varied:
         won = [one.values[row[winner]] for winner in winners]
         numbers = [float(v) for v in won if isinstance(v, int | float) and not isinstance(v, bool)]
         if numbers:

@@ -116,7 +116,15 @@ def phantom_cases(
     ]
 
 
-def cut_case(path: str, defect: str, seed: int, *, diameter_mm: int | None = None, folder: str | Path = "") -> Case:
+def cut_case(
+    path: str,
+    defect: str,
+    seed: int,
+    *,
+    diameter_mm: int | None = None,
+    mask: bool | None = None,
+    folder: str | Path = "",
+) -> Case:
     """A whole skull with a hole cut into it.
 
     Parameters
@@ -130,6 +138,8 @@ def cut_case(path: str, defect: str, seed: int, *, diameter_mm: int | None = Non
     diameter_mm : int, optional
         Mean diameter; a hole that is too wide for its skull is made as wide as fits, in steps of 5 mm. By default the
         kind's own.
+    mask : bool, optional
+        As for `read_ct`.
     folder : path
         Where the path starts.
 
@@ -137,8 +147,8 @@ def cut_case(path: str, defect: str, seed: int, *, diameter_mm: int | None = Non
     -------
     Case
     """
-    name = f"{path}-{defect}-{diameter_mm or 'own'}-{seed}"
-    return Case(name, "cut", {"path": path, "defect": defect, "seed": seed, "diameter_mm": diameter_mm}, str(folder))
+    source = {"path": path, "defect": defect, "seed": seed, "diameter_mm": diameter_mm, "mask": mask}
+    return Case(f"{path}-{defect}-{diameter_mm or 'own'}-{seed}", "cut", source, str(folder))
 
 
 def load_case(case: Case) -> tuple[Volume, Volume | None]:
@@ -189,11 +199,13 @@ def _phantom(folder: Path, head: str, size: str, defect: str, seed: int) -> tupl
     return Volume(made.bone if made.hu is None else made.hu, made.affine), Volume(made.implant, made.affine)
 
 
-def _cut(folder: Path, path: str, defect: str, seed: int, diameter_mm: int | None) -> tuple[Volume, Volume | None]:
+def _cut(
+    folder: Path, path: str, defect: str, seed: int, diameter_mm: int | None, mask: bool | None
+) -> tuple[Volume, Volume | None]:
     """A hole cut into a whole skull, as wide as it fits."""
     from data_synth import cut_case as open_skull
 
-    whole, load = read_ct(folder / path)
+    whole, load = read_ct(folder / path, mask=mask)
     reason = ""
     for diameter in range(diameter_mm, 0, -_STEP_MM) if diameter_mm else (None,):
         try:

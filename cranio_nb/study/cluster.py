@@ -72,6 +72,7 @@ def dask_workers(
                 processes=processes,
                 memory_limit=limit,
                 dashboard_address="127.0.0.1:0",  # seen from this machine only
+                worker_dashboard_address="127.0.0.1:0",
             )
             client = stack.enter_context(Client(stack.enter_context(cluster)))
         else:

@@ -32,9 +32,9 @@ import numpy as np
 from scipy.stats import qmc
 
 from ..errors import InputRefused
-from ..methods.catalogue import check_options, default_options, options_of
+from ..methods.catalogue import check_preset, options_of
 from ..options import THRESHOLD, Option
-from ..pipeline.trial import Contender, contenders
+from ..pipeline.trial import Contender
 from .cases import Case
 from .work import Batch
 
@@ -193,7 +193,7 @@ def vary(
     Raises
     ------
     InputRefused
-        ``UnknownMethod``, ``UnknownOption``, ``BadOption``, ``BadPlan``.
+        ``UnknownMethod``, ``UnknownPreset``, ``BadOption``, ``BadPlan``.
 
     Examples
     --------
@@ -202,12 +202,13 @@ def vary(
     >>> [setting.threshold_hu for setting in vary("hull", thresholds_hu=[300, 500])]
     [None, 300.0, 500.0]
     """
-    (base,) = contenders([name])
-    ranges = dict(ranges or {})
-    check_options(base.method, {option: default_options(base.method).get(option) for option in ranges})
-    if thresholds_hu:
-        ranges[THRESHOLD_HU] = thresholds_hu
+    method, _, preset = name.partition(":")
+    base = Contender(method, preset or "default")
+    check_preset(base.method, base.preset)
+    ranges = dict(ranges or {}) | ({THRESHOLD_HU: thresholds_hu} if thresholds_hu else {})
     known = options_of(base.method) | {THRESHOLD_HU: THRESHOLD}
+    if strange := sorted(set(ranges) - set(known)):
+        raise bad_plan(f"{base.method} has no option {strange[0]!r}", f"it has {', '.join(known)}")
     sought = {option: (known[option], wanted) for option, wanted in ranges.items()}
     places = _drawn(sought, random, seed) if random else _crossed(sought)
     found = [_setting(base, place, known) for place in ({}, *places)]
@@ -256,25 +257,34 @@ def _drawn(sought: Mapping[str, tuple[Option, Any]], n: int, seed: int) -> Itera
 
 def _at(name: str, option: Option, wanted: Any, share: float) -> Any:
     """The value at a share, 0 to 1, of what is wanted of a parameter."""
-    if isinstance(wanted, Mapping) and option.kind != "true or false":
-        low, high, _ = _ends(name, option, wanted)
-        value = low + share * (high - low)
-        return int(np.floor(low + share * (high + 1 - low))) if option.kind == "whole number" else float(value)
-    values = _values(name, option, wanted)
-    return values[int(share * len(values))]
+    if not _is_range(option, wanted):
+        values = _listed(name, option, wanted)
+        return values[int(share * len(values))]
+    low, high, _ = _ends(name, option, wanted)
+    if option.kind == "whole number":
+        return int(np.floor(low + share * (high + 1 - low)))
+    return float(low + share * (high - low))
 
 
 def _values(name: str, option: Option, wanted: Any) -> list[Any]:
     """The values of a parameter in a grid."""
-    if isinstance(wanted, list | tuple) and wanted:
-        return [float(v) if option.kind == "number" and isinstance(v, int) and v is not True else v for v in wanted]
-    if not isinstance(wanted, Mapping):
-        raise bad_plan(f"{name} has no values", 'give a list of values, or {"low": ..., "high": ..., "n": ...}')
-    if option.kind == "true or false":
+    if not _is_range(option, wanted):
+        return _listed(name, option, wanted)
+    steps = np.linspace(*_ends(name, option, wanted))
+    return sorted({round(step) for step in steps}) if option.kind == "whole number" else steps.tolist()
+
+
+def _is_range(option: Option, wanted: Any) -> bool:
+    return isinstance(wanted, Mapping) and option.kind != "true or false"
+
+
+def _listed(name: str, option: Option, wanted: Any) -> list[Any]:
+    """The values of a list, numbers of one type; both truth values where nothing is said."""
+    if isinstance(wanted, Mapping):
         return [False, True]
-    low, high, n = _ends(name, option, wanted)
-    steps = np.linspace(low, high, n)
-    return sorted({round(v) for v in steps}) if option.kind == "whole number" else steps.tolist()
+    if not isinstance(wanted, list | tuple) or not wanted:
+        raise bad_plan(f"{name} has no values", 'give a list of values, or {"low": ..., "high": ..., "n": ...}')
+    return [float(v) if option.kind == "number" and type(v) is int else v for v in wanted]
 
 
 def _ends(name: str, option: Option, wanted: Mapping[str, Any]) -> tuple[float, float, int]:
@@ -295,7 +305,8 @@ def _setting(base: Contender, place: Mapping[str, Any], known: Mapping[str, Opti
     """A setting at a place; what equals the default is left out, so that each setting has one form."""
     threshold = THRESHOLD.check(THRESHOLD_HU, place.get(THRESHOLD_HU, THRESHOLD.default))
     options = {name: value for name, value in place.items() if name != THRESHOLD_HU}
-    check_options(base.method, options)
+    for name, value in options.items():
+        known[name].check(f"The option {name} of {base.method}", value)
     if base.preset == "default":
         options = {name: value for name, value in options.items() if value != known[name].default}
     usual = threshold == THRESHOLD.default

@@ -141,8 +141,8 @@ def example(methods: tuple[str, ...]) -> dict[str, Any]:
 def _typed(words: Mapping[str, Any], name: str, kind: type, default: Any) -> Any:
     """A value of the wanted type."""
     found = words.get(name, default)
-    if not isinstance(found, kind) or isinstance(found, bool):
-        called = {list: "list", dict: "object", int: "whole number", str: "text"}[kind]
+    if type(found) is not kind:
+        called = {list: "list", dict: "object", int: "whole number", str: "text", bool: "truth value"}[kind]
         raise bad_plan(f"{name} is no {called}", f"give {name} as a {called}")
     return found
 
@@ -157,9 +157,8 @@ def _list(group: Mapping[str, Any], name: str, kind: type, default: Any = None) 
 
 
 def _scans(group: Mapping[str, Any], folder: str) -> list[Case]:
-    truth, mask = group.get("truth"), group.get("mask")
-    if not isinstance(truth, str | None) or not isinstance(mask, bool | None):
-        raise bad_plan("truth is no text, or mask neither true nor false", "give the name of a file, and true or false")
+    truth = _typed(group, "truth", str, "") or None
+    mask = _typed(group, "mask", bool, False) or None
     return scan_cases(_paths(group, folder), truth=truth, mask=mask, folder=folder)
 
 
@@ -173,9 +172,10 @@ def _phantoms(group: Mapping[str, Any], folder: str) -> list[Case]:
 
 
 def _cuts(group: Mapping[str, Any], folder: str) -> list[Case]:
+    mask = _typed(group, "mask", bool, False) or None
     sizes = _list(group, "diameters_mm", int) if "diameters_mm" in group else [None]
     return [
-        cut_case(path, defect, seed, diameter_mm=size, folder=folder)
+        cut_case(path, defect, seed, diameter_mm=size, mask=mask, folder=folder)
         for path in _paths(group, folder)
         for seed in _list(group, "seeds", int, [0])
         for defect in _defects(group)
@@ -186,7 +186,7 @@ def _cuts(group: Mapping[str, Any], folder: str) -> list[Case]:
 _GROUPS: dict[str, tuple[Callable[[Mapping[str, Any], str], list[Case]], set[str]]] = {
     "scan": (_scans, {"paths", "truth", "mask"}),
     "phantom": (_phantoms, {"defects", "seeds", "size", "head"}),
-    "cut": (_cuts, {"paths", "defects", "seeds", "diameters_mm"}),
+    "cut": (_cuts, {"paths", "defects", "seeds", "diameters_mm", "mask"}),
 }
 
 

@@ -12,9 +12,11 @@ from pyarrow import csv
 
 from ..errors import CranioError, InputRefused
 from ..output.files import write_json, write_text, write_whole
-from .best import Best, best_setting, target_of
+from .best import Best, target_of
 from .cases import Case
-from .page import by_contender, study_page
+from .failures import failure_shots, reasons
+from .page import study_page
+from .parts import Part, by_contender, contender_part
 from .plan_file import cases_of, plan_of
 from .store import PLAN, SCHEMA, Columns, Store
 from .version import version_of
@@ -34,14 +36,24 @@ class Study:
         Of its plan, as far as it can be read.
     missing : int or None
         Runs of the plan that are not done; None where its methods are not known here.
-    best : tuple of Best
-        The best setting of each contender.
+    parts : tuple of Part
+        What is said of each contender.
     """
 
     columns: Columns
     cases: tuple[Case, ...]
     missing: int | None
-    best: tuple[Best, ...]
+    parts: tuple[Part, ...]
+
+    @property
+    def best(self) -> tuple[Best, ...]:
+        """The best setting of each contender that has one.
+
+        Returns
+        -------
+        tuple of Best
+        """
+        return tuple(part.best for part in self.parts if part.best is not None)
 
 
 def read_study(folder: Path) -> Study:
@@ -64,8 +76,8 @@ def read_study(folder: Path) -> Study:
     if not len(columns["key"]):
         raise InputRefused("NoRows", "There are no rows of a study in this folder.", "Run `cranio-nb study run` first.")
     target = target_of(columns)
-    found = tuple(best for own in by_contender(columns) if (best := best_setting(own, target)) is not None)
-    return Study(columns, *_planned(folder, columns), found)
+    parts = tuple(contender_part(own, target) for own in by_contender(columns))
+    return Study(columns, *_planned(folder, columns), parts)
 
 
 def newest(columns: Columns) -> Columns:
@@ -114,7 +126,9 @@ def write_report(study: Study, folder: Path) -> None:
     CannotWrite
         If a file cannot be written.
     """
-    write_text(folder / PAGE, study_page(study.columns, study.cases, study.missing))
+    why = reasons(study.columns)
+    page = study_page(study.columns, study.parts, why, failure_shots(why, study.cases), missing=study.missing)
+    write_text(folder / PAGE, page)
     table = pa.table({name: pa.array(study.columns[name], from_pandas=True) for name in SCHEMA.names})
     stream = pa.BufferOutputStream()
     csv.write_csv(table, stream)

@@ -155,7 +155,8 @@ class _Handing:
         try:
             while self.todo or self.out:
                 self._hand_out()
-                for future in wait(self.out, return_when=FIRST_COMPLETED).done:
+                ended = wait(self.out, return_when=FIRST_COMPLETED).done
+                for future in sorted(ended, key=_has_no_rows):  # rows first: what has none may be the end
                     self._take_back(future)
         finally:
             for future in self.out:
@@ -175,10 +176,10 @@ class _Handing:
         """Write the rows of a batch; one that killed its workers is tried run by run, so that one run is to blame."""
         batch = self.out.pop(future)
         error = None if future.cancelled() else future.exception()
-        if future.cancelled() or (error is not None and type(error).__name__ != _KILLED):
-            raise _lost(error) from error
-        if error is None:
+        if not _has_no_rows(future):
             rows = future.result()
+        elif type(error).__name__ != _KILLED:
+            raise _lost(error) from error
         elif len(batch.keys) > 1:
             self.todo.extendleft(reversed(batch.singly()))
             return
@@ -191,6 +192,11 @@ class _Handing:
         seconds = time.monotonic() - self.began
         self.tally = Tally(t.total, t.before, t.done + len(rows), t.failed + failed, seconds)
         self.progress(self.tally)
+
+
+def _has_no_rows(future: Future[list[Row]]) -> bool:
+    """Whether a batch that has ended brought nothing."""
+    return future.cancelled() or future.exception() is not None
 
 
 _KILLED = "KilledWorker"  # of Dask: workers died with this task again and again

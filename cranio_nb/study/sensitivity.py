@@ -8,7 +8,7 @@ its case is taken first, so that hard and easy cases do not count: all settings 
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 from typing import Any
@@ -61,7 +61,7 @@ class Effect:
     share : float
         Of the variance within cases, 0 to 1; nan where nothing varies.
     means, sds : ndarray, shape (levels,)
-        Of the measure at each level, over all cases and other parameters; how cases differ from each other is taken out.
+        Of the measure at each level, over all cases and other parameters; how cases differ is taken out.
     change : float
         From the lowest level to the highest, "auto" left out.
     """
@@ -74,13 +74,36 @@ class Effect:
     change: float
 
 
-def parameters(columns: Columns) -> list[Parameter]:
+def usual_options(columns: Columns) -> dict[str, Any]:
+    """What options of a contender are when they are not given.
+
+    Parameters
+    ----------
+    columns : Columns
+        All of one contender.
+
+    Returns
+    -------
+    dict
+        The defaults of the method; empty for a preset, whose values may depend on the scan, and for a method that is
+        not there, as an own one need not be when a report is made.
+    """
+    name, method = columns["contender"][0], columns["method"][0]
+    try:
+        return default_options(method) if name == method else {}
+    except InputRefused:
+        return {}
+
+
+def parameters(columns: Columns, usual: Mapping[str, Any]) -> list[Parameter]:
     """The parameters that differ among rows of one contender.
 
     Parameters
     ----------
     columns : Columns
-        All of one method and preset.
+        All of one contender.
+    usual : dict
+        Its options where they are not given, see `usual_options`.
 
     Returns
     -------
@@ -88,7 +111,6 @@ def parameters(columns: Columns) -> list[Parameter]:
     """
     given = [json.loads(text) for text in columns["options"]]
     names = list(dict.fromkeys(name for options in given for name in options))
-    usual = _usual(columns)
     found = {name: [options.get(name, usual.get(name)) for options in given] for name in names}
     heights = columns["threshold_hu"]
     found[THRESHOLD_HU] = np.where(np.isnan(heights), THRESHOLD.default, heights).tolist()
@@ -200,15 +222,6 @@ def within_cases(numbers: NDArray[np.float64], case: NDArray[np.object_]) -> NDA
     size = np.bincount(place, seen)
     sums = np.bincount(place, np.where(seen, numbers, 0.0))
     return numbers - (sums / np.maximum(size, 1))[place]
-
-
-def _usual(columns: Columns) -> dict[str, Any]:
-    """The defaults of the method; nothing for a preset, whose values may depend on the scan, or an unknown method."""
-    name, method = columns["contender"][0], columns["method"][0]
-    try:
-        return default_options(method) if name == method else {}
-    except InputRefused:  # own methods need not be there when a report is made
-        return {}
 
 
 def _parameter(name: str, column: list[Any]) -> Parameter:

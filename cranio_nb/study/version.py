@@ -8,9 +8,9 @@ import marshal
 import subprocess
 import sys
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 
-from .. import __version__
 from ..methods.catalogue import Pieces, find_method
 
 _CODE = """
@@ -43,7 +43,7 @@ def version_of(method: str) -> str:
     pieces = find_method(method).pieces
     ours = (pieces.__module__,) if pieces.__module__.startswith("cranio_nb.") else ()
     digest = hashlib.sha256(_source(pieces) + _loaded(ours))
-    return f"{__version__}+{digest.hexdigest()[:8]}"
+    return f"{version('cranio-nb')}+{digest.hexdigest()[:8]}"
 
 
 def _source(function: Pieces) -> bytes:
