@@ -140,6 +140,7 @@ class _Handing:
     def __init__(
         self, plan: Plan, store: Store, executor: Executor, attempt: Attempt, progress: Callable[[Tally], None]
     ) -> None:
+        store.tidy()  # removes no file but those that it has read
         done = store.done()
         versions = {method: version_of(method) for method in {s.contender.method for s in plan.settings}}
         self.todo = deque(plan.batches(done, versions.__getitem__))
@@ -161,7 +162,7 @@ class _Handing:
         finally:
             for future in self.out:
                 future.cancel()
-        self.store.tidy()  # removes no file but those that it has read
+        self.store.tidy()
         return self.tally
 
     def _hand_out(self) -> None:

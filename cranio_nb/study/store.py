@@ -173,6 +173,8 @@ class Store:
         for path in self._files():
             try:
                 parts.append(pq.read_table(path, columns=schema.names).cast(schema))
+            except FileNotFoundError:  # another part of the study has just made one file of many
+                return self._table(names)
             except (pa.ArrowException, OSError, ValueError, KeyError) as error:
                 message = f"{ROWS}/{path.name} holds no rows of a study."
                 raise InputRefused("BadRows", message, "Remove it; its runs are done again.") from error

@@ -7,7 +7,6 @@ Memory: one case with its masks, and what one method needs; nothing is kept betw
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -61,7 +60,7 @@ class _Skull:
 
     bone: Volume
     openings: tuple[Opening, ...]
-    truth: Reference | None
+    truth: Volume | None
     facts: Row
 
 
@@ -84,9 +83,19 @@ def do_batch(batch: Batch, methods: bytes, attempt: Attempt) -> list[Row]:
     unpack_methods(methods)
     try:
         skull = _prepare(batch)
+        truth = None if skull.truth is None else Reference.of(skull.truth, skull.bone, skull.openings[0])
     except Exception as error:
         return failed_rows(batch, **_reason(error))
-    return [_run(row, skull, one, attempt) for row, one in zip(_heads(batch), batch.contenders, strict=True)]
+    rows = _heads(batch)
+    for row, contender in zip(rows, batch.contenders, strict=True):
+        row |= skull.facts
+        try:
+            trial = attempt(skull.bone, skull.openings, contender)
+            measures = measure(trial, skull.bone, truth)
+            row |= {"status": trial.status, "code": trial.code, "message": trial.message} | measures
+        except Exception as error:  # what cannot be measured is a row, too
+            row |= _reason(error)
+    return rows
 
 
 def failed_rows(batch: Batch, *, status: str, code: str, message: str) -> list[Row]:
@@ -125,22 +134,10 @@ def _prepare(batch: Batch) -> _Skull:
     """Read or make the case, and find what is to be closed, as `cranio-nb design` does."""
     scan, truth = load_case(batch.case)
     seen = survey_scan(scan, batch.threshold_hu)
-    closed: Sequence[Opening] = tuple(one.opening for one in openings_to_close(seen))
+    closed = tuple(one.opening for one in openings_to_close(seen))
     size = measure_opening(closed[0])
     facts = {"place": size.place, "length_mm": size.length, "n_openings": len(closed)}
-    reference = None if truth is None else Reference.of(truth, seen.bone, closed[0])
-    return _Skull(seen.bone, tuple(closed), reference, facts)
-
-
-def _run(row: Row, skull: _Skull, contender: Contender, attempt: Attempt) -> Row:
-    """Design and measure."""
-    row = row | skull.facts
-    try:
-        trial = attempt(skull.bone, skull.openings, contender)
-        measures = measure(trial, skull.bone, skull.truth)
-    except Exception as error:  # what cannot be measured is a row, too
-        return row | _reason(error)
-    return row | {"status": trial.status, "code": trial.code, "message": trial.message} | measures
+    return _Skull(seen.bone, closed, truth, facts)
 
 
 def _reason(error: Exception) -> dict[str, str]:

@@ -89,3 +89,14 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(CannotWrite), Store(tmp_path / "file").opened():
         pass
+
+
+def test_files_that_are_made_one_while_they_are_read_are_read_there(folder, monkeypatch):
+    for key in "abc":
+        folder.add([row(key)])
+    seen = folder._files()
+    monkeypatch.setattr(store, "_MANY", 1)
+    folder.tidy()
+    answers = [seen, folder._files()]
+    monkeypatch.setattr(Store, "_files", lambda self: answers.pop(0))
+    assert folder.done() == {"a", "b", "c"}
