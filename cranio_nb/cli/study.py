@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -84,8 +85,10 @@ def run(
     with _extra():
         from ..study.cluster import dask_workers
         from ..study.run import run_study
-        from ..study.store import Store
+        from ..study.store import PLAN, ROWS, Store, is_study
     asked, words = _read(plan)
+    check_writes(out, (PLAN, ROWS), {"plan": plan}, own=is_study)
+    _check_beside(out, asked)
     Store(out).keep_plan(words)
     with dask_workers(scheduler, n_workers=workers, memory_gb=memory_gb) as there, _progress() as progress:
         click.echo(f"dashboard: {there.dashboard}", err=True)
@@ -128,6 +131,15 @@ def _read(path: Path) -> tuple[Plan, dict[str, Any]]:
         return read_plan(path)
     except InputRefused as error:
         raise click.BadParameter(str(error), param_hint="PLAN") from None
+
+
+def _check_beside(out: Path, plan: Plan) -> None:
+    """Refuse a study that would lie in one of its own scans."""
+    home = Path(os.path.realpath(out))
+    for case in plan.cases:
+        if "path" in case.source and home.is_relative_to(os.path.realpath(Path(case.folder) / case.source["path"])):
+            message = f"it is, or lies in, the scan {case.name}; name another folder."
+            raise click.BadParameter(message, param_hint="--out")
 
 
 def _share(text: str | None) -> tuple[int, int]:

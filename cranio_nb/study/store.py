@@ -45,8 +45,31 @@ SCHEMA = pa.schema(
 when it was written (s since 1970)."""
 Columns = dict[str, NDArray[Any]]
 """Rows as a column for each name: numbers as float64 with nan for none, text as objects with "" for none."""
-PLAN, ROWS = "plan.json", "rows"
+PLAN, ROWS = "study.json", "rows"
 _MANY = 500  # files, from which on they are made one
+
+
+def is_study(folder: Path, name: str) -> bool:
+    """Whether a file or folder is of a study, which may go on there.
+
+    Parameters
+    ----------
+    folder : Path
+    name : str
+        `PLAN` or `ROWS`.
+
+    Returns
+    -------
+    bool
+    """
+    path = folder / name
+    if name == ROWS:
+        return path.is_dir() and all(item.suffix == ".parquet" or item.name[0] == "." for item in path.iterdir())
+    try:
+        words = json.loads(path.read_bytes())
+    except (OSError, ValueError):
+        return False
+    return isinstance(words, dict) and words.keys() >= {"folder", "cases", "methods"}
 
 
 class Store:

@@ -27,7 +27,7 @@ def plan(tmp_path, monkeypatch):
 
     @contextmanager
     def workers(scheduler=None, **asked):
-        yield Workers(Inline(), f"http://{scheduler or 'here'}/status")
+        yield Workers(Inline(), f"page of {scheduler or 'here'}")
 
     monkeypatch.setattr(cluster, "dask_workers", workers)
     monkeypatch.setattr(run, "do_batch", rows_for)
@@ -39,7 +39,7 @@ def plan(tmp_path, monkeypatch):
 
 def test_runs_and_goes_on(plan, tmp_path):
     first = cranio("study", "run", plan, "--out", tmp_path / "study", "--part", "1/3")
-    assert "3 of 3 runs done, 3 of them now, 0 failed" in first.stdout and "http://here/status" in first.stderr
+    assert "3 of 3 runs done, 3 of them now, 0 failed" in first.stdout and "page of here" in first.stderr
     again = cranio("study", "run", plan, "--out", tmp_path / "study", "--scheduler", "tcp://127.0.0.1:1")
     assert "9 of 9 runs done, 6 of them now" in again.stdout and "9 of 9 runs" in again.stderr
     made = cranio("study", "report", tmp_path / "study")
@@ -85,3 +85,26 @@ def test_without_the_extra_it_says_what_to_install(plan, tmp_path, monkeypatch):
 
 def test_times_are_two_whole_numbers():
     assert [_duration(s) for s in (59.9, 3700, 86400 * 3 + 7200)] == ["0 min 59 s", "1 h 1 min", "3 d 2 h"]
+
+
+class TestNothingIsLost:
+    def test_a_file_of_that_name_that_is_no_study_stays(self, plan, tmp_path):
+        (tmp_path / "study.json").write_text("[]")
+        found = cranio("study", "run", plan, "--out", tmp_path)
+        assert found.exit_code == 5 and "study.json" in found.stderr and (tmp_path / "study.json").read_text() == "[]"
+
+    def test_rows_of_others_stay(self, plan, tmp_path):
+        (tmp_path / "x" / "rows").mkdir(parents=True)
+        (tmp_path / "x" / "rows" / "mine.txt").touch()
+        assert cranio("study", "run", plan, "--out", tmp_path / "x").exit_code == 5
+
+    def test_the_plan_stays_though_its_name_is_that_of_the_copy(self, plan, tmp_path):
+        plan.rename(tmp_path / "study.json")
+        found = cranio("study", "run", tmp_path / "study.json", "--out", tmp_path)
+        assert found.exit_code == 2 and json.loads((tmp_path / "study.json").read_text()) == PLAN
+
+    def test_no_study_lies_in_a_scan(self, plan, tmp_path):
+        (tmp_path / "ct").mkdir()
+        plan.write_text(json.dumps(PLAN | {"cases": [{"kind": "scan", "paths": ["ct"]}]}))
+        found = cranio("study", "run", plan, "--out", tmp_path / "ct" / "x")
+        assert found.exit_code == 2 and "lies in, the scan ct" in found.stderr and not any((tmp_path / "ct").iterdir())

@@ -46,7 +46,7 @@ def test_what_is_missing_is_counted_where_the_plan_is_known(folder):
     assert len(read_study(folder).cases) == 3
     Store(folder).keep_plan(WORDS | {"methods": {"gone": {}}})
     assert read_study(folder).missing is None and len(read_study(folder).cases) == 3
-    (folder / "plan.json").unlink()
+    (folder / "study.json").unlink()
     assert read_study(folder).cases == ()
 
 
