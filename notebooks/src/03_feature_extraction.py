@@ -34,20 +34,24 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 #
 # | name | meaning | unit in the code | unit of the sliders | paper |
 # |---|---|---|---|---|
-# | `skip` | boundary left out next to the gap | `skip_px`, along the bone | mm | 10 points = 4.5 mm |
+# | `skip` | boundary left out next to the gap | `skip_px`, along the bone | mm | 10 points |
 # | `reach` | boundary that carries the tangent, after that | `reach_px`, along the bone | mm | not given |
 #
-# The paper's pixels are 0.45 mm, so its 10 points are 4.5 mm. In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are
-# 5 px here, and 10 px are 9 mm.
+# How long are 10 points? The paper does not tell the size of its pixels, only that a slice has 512 x 512 of them. A
+# scan of a head is about as wide as ours, and then they are 0.45 mm, and ten points 4.5 mm. **So this course takes
+# them.** In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are 5 px here, and 10 px are 9 mm.
 #
 # *The switch:* `"full"` for the paper's size, or `classroom.load(scan="path/to/your/scan")`.
 
-# %%
+# %% tags=["nbval-check-output"]
 case = classroom.load("class")
 bone = cn.segment(case.ct)
 opening = cn.find_openings(bone)[0]
 plane = classroom.bridged_plane(bone, opening, skip_px=5, reach_px=6)
 mask, px = bone.voxels[plane], case.px
+across = mask.shape[1] * px  # mm
+for whose, mm in (("our", px), ("512", across / 512)):
+    print(f"{whose} pixels over {across:.0f} mm: {mm:.2f} mm each, ten are {10 * mm:.1f} mm")
 
 # %% [markdown]
 # ## 1. Boundary, skeleton, hull
@@ -94,10 +98,10 @@ pictures.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.inn
 # The gap ends where the skeleton ends. But a squarely cut bone has two corners there, and the skeleton forks into
 # both. Real bone adds spurs. So we take the **longest path** through the skeleton, measured along it. The path still
 # runs into one of the two corners. There it comes near the boundary: it is no longer in the middle. So we **cut off**
-# its end, up to the first point that lies as deep in the bone (at least 0.8 of it) as the path does further back.
+# its end, up to the first point that lies nearly as deep in the bone as the path does further back.
 
 # %%
-row, col = np.mgrid[-30:30, -30:30]
+row, col = np.mgrid[-30:30, -30:30]  # a bar of 50 x 11 px, turned by 20 degrees
 bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) <= 5)
 
 # %% tags=["nbval-check-output"]
@@ -127,7 +131,7 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # 1. Move `skip` to 0: what do the tangents do, and the white circles?
 # 2. Put `skip` back to 4.5 mm and `reach` to 6 mm, and step through the slices around this one. Then make `reach`
 #    smaller until the package refuses.
-# 3. Move `reach` to 40 mm: where does the black line leave the pixels?
+# 3. Move `reach` to 40 mm (44 px in section 4): where does the black line leave the pixels?
 
 # %% tags=["nbval-check-output"]
 panel = widgets.features(bone, plane, opening=opening.sheet)
@@ -139,8 +143,8 @@ panel
 #
 # 1. Pixels of the cut face join the fit and turn the line. The white circles move into the cut face: the gap seems
 #    narrower than it is (section 4 prints both lengths).
-# 2. A few pixels of a staircase: from slice to slice the angles jump by 5 degrees on average, and once by 15 (noise).
-#    With fewer than 4 pixels the package refuses to fit a line.
+# 2. A few pixels are a piece of a staircase, and show its step or its tread: from slice to slice the angles jump by
+#    5 degrees on average, and once by 15 (noise). With fewer than 4 pixels the package refuses to fit a line.
 # 3. The bone is curved, and the line is a chord of it: it leaves the pixels at both ends, and shows the direction in
 #    the *middle* of the neighbourhood, not at the end (bias).
 #
@@ -186,7 +190,8 @@ def expected(case, plane, length):
 
 
 # %% tags=["nbval-check-output"]
-settings = ((0, 10), (5, 10), (10, 10), (5, 6), (5, 25), (5, 44))  # 44 px are 40 mm
+settings = ((0, 10), (5, 10), (10, 10), (5, 6), (5, 25), (5, 44))
+print(f"44 px are {44 * px:.0f} mm")
 true_length, (true0, true1) = truth(case, plane)
 print(f"true gap: L {true_length:.1f} px, theta0 {true0:.1f}, theta1 {true1:.1f}")
 for skip, reach in settings:
@@ -252,10 +257,10 @@ print(f"at most {jumps.max():.0f}")
 # <details>
 # <summary>Answer</summary>
 #
-# No: 10 px of 0.9 mm are 9 mm, 10 px of 0.45 mm are 4.5 mm. The cut face is a part of the patient, and its depth should
-# be given in mm. The sliders above do so, and so do the options of `cn.design`. What it costs to count points instead
-# is measured in lesson 05. (`reach` is not as simple: the curvature of a skull is measured in mm, but the noise of a line
-# falls with the number of its points. The paper's 4.5 mm would be 5 px here, hardly enough for a line.)
+# No: ten points are twice as long there. The cut face is a part of the patient, and its depth should be given in mm.
+# The sliders above do so, and so do the options of `cn.design`. What it costs to count points instead is measured in
+# lesson 05. (`reach` is not as simple: the curvature of a skull is measured in mm, but the noise of a line falls with
+# the number of its points. A `reach` of 4.5 mm would be 5 px here, hardly enough for a line.)
 #
 # </details>
 #
