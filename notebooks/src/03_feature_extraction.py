@@ -143,8 +143,9 @@ panel
 #
 # 1. Pixels of the cut face join the fit and turn the line. The white circles move into the cut face: the gap seems
 #    narrower than it is (section 4 prints both lengths).
-# 2. A few pixels are a piece of a staircase, and show its step or its tread: from slice to slice the angles jump by
-#    5 degrees on average, and once by 15 (noise). With fewer than 4 pixels the package refuses to fit a line.
+# 2. A few pixels are a piece of a staircase, and show its step or its tread: from slice to slice the angles jump by 4
+#    degrees on average, and once by 13 (noise; section 4 prints it). With fewer than 4 pixels the package refuses to
+#    fit a line.
 # 3. The bone is curved, and the line is a chord of it: it leaves the pixels at both ends, and shows the direction in
 #    the *middle* of the neighbourhood, not at the end (bias).
 #
@@ -238,19 +239,18 @@ for skip, reach in settings:
     scatters = " ".join(f"{e.std(axis=0).mean():4.1f}" for e in errors)
     slices = " ".join(f"{len(e):2}" for e in errors)
     print(f"skip {skip:2} px, reach {reach:2} px: {means}  {scatters}  {slices}")
-jumps = np.abs(np.diff(errors_near(*heads[0], 5, 6), axis=0))
-print(
-    f"reach 6 px, from one slice with a gap to the next: {jumps.mean():.0f} on average,",
-    end=" ",
-)
-print(f"at most {jumps.max():.0f}")
+
+# %% tags=["nbval-check-output"]
+jumps = [np.abs(np.diff(errors_near(*head, 5, 6 / px), axis=0)) for head in heads]
+print("reach 6 mm, from one slice with a gap to the next, each head (degrees):", end=" ")
+print(*(f"{j.mean():.0f} on average, at most {j.max():.0f}" for j in jumps), sep="; ")
 
 # %% [markdown]
 # With `reach` 6, 10, 25 px the scatter falls in each of the four heads, and from 10 to 25 px the mean error more than
 # doubles: that is the trade of noise against bias. With 44 px, the 40 mm of question 3, there is no less scatter and
-# twice the error again. (At 6 px the noise is too large to tell the bias, and some slices are refused, too.) With
-# `skip` = 0 the cut face adds an error of its own, larger and to the other side. From `skip` 5 to 10 px the angles grow
-# mostly because the gap is wider.
+# nearly twice the error again. (At 6 px the noise is too large to tell the bias, and some slices are refused, too.)
+# With `skip` = 0 the cut face adds an error of its own, larger and to the other side. From `skip` 5 to 10 px the angles
+# grow mostly because the gap is wider.
 #
 # **Question.** The paper leaves out "10 points". On a scan with pixels twice as large, is this the same?
 #

@@ -299,9 +299,9 @@ for size in (15, 30, 50, 70, 100):
 #
 # </details>
 #
-# On ten real skulls, the cases of SkullFix (Kodym et al. 2021), the README's table has a Dice of 0.935 for the thin
-# plate and 0.943 with a prior (`benchmarks/skullfix.py` measures it). No prior is shipped: learn one from scans that
-# you may use. It is never needed.
+# On ten real skulls, the cases of SkullFix (Kodym et al. 2021), the README's table has a mean Dice of 0.935 for the
+# thin plate and 0.943 with a prior, in the worst case 0.895 and 0.910 (`benchmarks/skullfix.py` measures it). No prior
+# is shipped: learn one from scans that you may use. It is never needed.
 #
 # ## 5. A sheet that moves
 #
@@ -395,7 +395,8 @@ pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone ar
 # large hole.
 #
 # One head is one draw, and a smooth one. On ten real skulls (the README's table) the order is the same and the three
-# lie nearer together: Dice 0.935 for the plate, 0.925 for the slices, 0.916 for D-NURBS.
+# lie nearer together: mean Dice 0.935 for the plate, 0.925 for the slices, 0.916 for D-NURBS (worst case 0.895,
+# 0.879 and 0.863).
 #
 # </details>
 #
