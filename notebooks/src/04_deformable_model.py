@@ -511,7 +511,7 @@ if truth is not None:
 
 # %%
 def too_high(plane):
-    """How much (mm) the balloons of the paper's k and of the tangents rise above the true bone."""
+    """How far (mm) two balloons rise above the true bone: the paper's k, the tangents' own."""
     ends, _ = classroom.gap_ends(bone, opening, plane, skip_px=3, reach_px=10)
     chord = ChordFrame.of(ends, inside)
     angles = chord.end_angles(ends)
