@@ -147,7 +147,7 @@ front = np.argwhere(raw[plane])[:1]  # the first bone pixel from the top
 fig, (left, right) = pictures.axes(2, height=4.2)
 pictures.show_hu(left, ct.voxels[plane], px=px, title="CT")
 pictures.show_mask(right, raw[plane], px=px)
-pictures.show_mask(right, added, px=px, colour="#D55E00", title="700 HU; filled in red")
+pictures.show_mask(right, added, px=px, colour="#D55E00", title="700 HU; filled: orange-red")
 for ax in (left, right):
     pictures.zoom(ax, [front], px=px, margin=40 / 2)
 alt = "Left: the front of a skull in CT. Right: its bone above 700 HU, many small holes filled."
@@ -189,7 +189,7 @@ bright = segmentation.apply_threshold(lying.ct.voxels, 400)
 kept = segmentation.drop_artefacts(bright)
 fig, (ax,) = pictures.axes(height=4.2, width=5.0)
 pictures.show_mask(ax, bright[level], px=lying.px, colour="#D55E00")
-pictures.show_mask(ax, kept[level], px=lying.px, title="skull kept, couch dropped (red)")
+pictures.show_mask(ax, kept[level], px=lying.px, title="skull kept, couch dropped (orange-red)")
 alt = "A ring of bone, and behind it a curved plate in another colour that is dropped."
 parts = ndimage.label(bright)[1]
 pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} after")
@@ -282,7 +282,7 @@ check.exercise("2.2", fill_small_holes)
 fig, (ax,) = pictures.axes(height=4.0, width=5.0)
 mine = fill_small_holes(raw[plane], 70)
 pictures.show_mask(ax, mine, px=px, colour="#D55E00")
-pictures.show_mask(ax, raw[plane], px=px, title="your filled holes in red")
+pictures.show_mask(ax, raw[plane], px=px, title="your filled holes in orange-red")
 pictures.zoom(ax, [front], px=px, margin=20)
 alt = "The front of a skull; small spots in its thickness are filled, the brain's place is not."
 pictures.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")

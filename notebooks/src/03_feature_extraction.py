@@ -72,8 +72,8 @@ corners = spine[spatial.ConvexHull(spine).vertices]
 pictures.show_curve(left, spine, px=px, line=0, label="spine")
 pictures.show_curve(left, [*corners, corners[0]], px=px, line=1, label="hull S")
 left.legend(loc="center")
-pictures.show_points(right, seen.outer, px=px, colour="#0072B2", label="outer: B without S")
-pictures.show_points(right, seen.inner, px=px, colour="#D55E00", label="inner: B and S")
+pictures.show_points(right, seen.outer, px=px, colour="#0072B2", label="outer: B - S")
+pictures.show_points(right, seen.inner, px=px, colour="#D55E00", label="inner: B ∩ S")
 right.set(xlim=left.get_xlim(), ylim=left.get_ylim(), aspect="equal", xlabel="mm")
 right.legend(loc="center")
 alt = "Left: an open ring of bone, its middle line and hull. Right: its two boundaries."
@@ -84,13 +84,13 @@ pictures.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.inn
 # <summary>Answer</summary>
 #
 # The hull reaches out to the middle line. What lies further out than the middle line is outside: the outer boundary,
-# **B - S**. What lies further in is in the hull: the inner boundary, **B and S**. One convex hull parts the curves,
-# and nobody had to say where inside is. It works because a skull is nearly convex: a deep dent of the bone would end up
-# in the hull.
+# **B - S** (B without S). What lies further in is in the hull: the inner boundary, **B ∩ S** (what B and S share). One
+# convex hull parts the curves, and nobody had to say where inside is. It works because a skull is nearly convex: a deep
+# dent of the bone would end up in the hull.
 #
 # </details>
 #
-# *A slip worth knowing:* read literally, the paper's "B and S" with S a *curve* would be almost empty. S must be the
+# *A slip worth knowing:* read literally, the paper's B ∩ S with S a *curve* would be almost empty. S must be the
 # filled hull, as here.
 #
 # ## 2. The ends
@@ -124,7 +124,7 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used. The
 # thin **black line** is the line that was fitted: it goes through the mean of the pixels used. The **green arrow** has
 # its direction, but starts at the white circle. theta0 and theta1 of the caption are the angles between the outer
-# arrows and the chord; section 4 says which to expect.
+# arrows and the chord, the straight line between their two circles; section 4 says which to expect.
 #
 # **Predict, then move, then explain.** (No sliders? Use `panel.set(skip_mm=0)` in a new cell, and `reach_mm`, `plane`.)
 #
@@ -243,7 +243,8 @@ for skip, reach in settings:
 # %% tags=["nbval-check-output"]
 jumps = [np.abs(np.diff(errors_near(*head, 5, 6 / px), axis=0)) for head in heads]
 print("reach 6 mm, from one slice with a gap to the next, each head (degrees):", end=" ")
-print(*(f"{j.mean():.0f} on average, at most {j.max():.0f}" for j in jumps), sep="; ")
+each = [f"{j.mean():.0f} on average, at most {j.max():.0f}" for j in jumps if j.size]
+print("; ".join(each))
 
 # %% [markdown]
 # With `reach` 6, 10, 25 px the scatter falls in each of the four heads, and from 10 to 25 px the mean error more than
@@ -328,7 +329,7 @@ check.exercise("3.3", arc_length)
 # %% [markdown]
 # ## Summary
 #
-# - The hull of the skeleton parts the boundary into outer (B - S) and inner (B and S).
+# - The hull of the skeleton parts the boundary into outer (B - S) and inner (B ∩ S).
 # - Ends come from the longest path of the skeleton; tangents from boundary pixels near them.
 # - `skip` keeps the cut face out. `reach` trades noise against bias.
 #
@@ -337,7 +338,7 @@ check.exercise("3.3", arc_length)
 # | B | `SliceFeatures.boundary` | px |
 # | skeleton | `SliceFeatures.skeleton` | px |
 # | S | `SliceFeatures.hull` | half-planes |
-# | B - S, B and S | `.outer`, `.inner` | px |
+# | B - S, B ∩ S | `.outer`, `.inner` | px |
 # | 10 points | `feature_extraction.PAPER_SKIP_PX` | px |
 # | theta0, theta1 | `ChordFrame.end_angles` | rad |
 #

@@ -207,7 +207,7 @@ for number, (head, design) in enumerate(zip(heads, papers, strict=True)):
 # **Predict, then move, then explain.** The panel starts with the pressure *from the end tangents*; the counts and
 # scores above are those of the paper's constant, which is the other choice. Go through the slices from the first to
 # the last. Where will the patch be thinnest, where does the hull take over from the balloon, and are there bad slices
-# in between?
+# in between? (No sliders? Use `panel.set(plane=23)` and the like in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.patch(bone, opening)

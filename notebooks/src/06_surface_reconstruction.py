@@ -116,9 +116,11 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 # %% [markdown]
 # **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
 # leave the bound by taking very many? Where will the vertices pile up that are stopped by it?
+# (No sliders? Use `panel.set(steps=200)` in a new cell.)
 
 # %% tags=["nbval-check-output"]
-widgets.surface(patch)
+panel = widgets.surface(patch)
+panel
 
 # %% tags=["nbval-check-output"]
 areas = {}

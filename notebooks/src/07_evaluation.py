@@ -63,7 +63,8 @@ for whose, table in (("ours", seen.table3), ("the paper's", paper_tables.PAPER_D
 # Voxels are no good unit: one is 2.5 mm high and 0.9 mm wide. From here on we use mm.
 #
 # **Predict, then move, then explain.** Where on the prosthesis will the largest distances lie: in its middle or at its
-# rim? Switch to the inner side (its numbers are printed too). Is it better or worse?
+# rim? Switch to the inner side (its numbers are printed too; without controls: `panel.set(side="inner")`). Is it better
+# or worse?
 
 # %% tags=["nbval-check-output"]
 panel = widgets.distances(made, seen.prosthesis)

@@ -271,6 +271,10 @@ out, inn, you = paper_tables.PAPER_DISTANCES.values()
 print(f"paper, You et al. {you.mean:8.2f} {you.max:5.2f}")
 print(f"paper, its method {out.mean:8.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}")
 
+# %% [markdown]
+# One slice of the hole, with the patch of each. Light blue is right, orange-red is bone that was missed, dark blue is
+# too much.
+
 # %% tags=["nbval-check-output"]
 at = sum(openings[0].planes) // 2
 fig, panels = pictures.axes(4, height=4.4)

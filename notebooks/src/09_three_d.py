@@ -41,7 +41,7 @@ from cranio_nb.vault import radius_measurement
 # | thin plate | `mirror_mm`, c | the same towards the other side's curvature | mm | 1.6 |
 # | thin plate | `prior` | a file of `cranio-nb prior learn` | | none |
 # | D-NURBS | `wavelength_mm` | ripples of this length are halved | mm | 20 |
-# | D-NURBS | `span_mm` | between the knots | mm | 8 |
+# | D-NURBS | `span_mm` | between the knots, where the sheet's pieces meet | mm | 8 |
 #
 # *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, as in lesson 07. The
 # numbers in the answers are those of `"class"`.
@@ -222,8 +222,9 @@ _ = plate.set(second_mm=1.3, third_mm=1.8, mirror_mm=1.6)
 # On the map the hole lies in a valley: the temple is nearer to the eye than what is around it. The second order wants
 # the map flat and fills the valley: 1.63 mm too high on average. The third continues the curvature that it finds at the
 # rim, bumps and all: 0.83 mm too deep. Both: 0.16 mm too deep, and with the mirrored side 0.06 mm. This head is smooth,
-# so a weak second order alone does as well (rms 0.22 mm against 0.24 mm); a real rim has more bumps, and a larger hole
-# more to guess. With nothing asked for there is a lid at the mean radius, up to 9.94 mm off.
+# so a weak second order alone does as well (rms, the root of the mean square: 0.22 mm against 0.24 mm); a real rim has
+# more bumps, and a larger hole more to guess. With nothing asked for there is a lid at the mean radius, up to 9.94 mm
+# off.
 #
 # </details>
 #
@@ -373,6 +374,10 @@ for name, one in made.items():
     print(f" {seen.score.dice:7.3f} {large.dice:14.3f} {large.hd95:9.2f}")
 out, inn, _ = paper_tables.PAPER_DISTANCES.values()
 print(f"paper        {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}")
+
+# %% [markdown]
+# One slice of the large hole, with the patch of each. Light blue is right, orange-red is bone that was missed, dark
+# blue is too much.
 
 # %% tags=["nbval-check-output"]
 at = sum(largest[0].planes) // 2
