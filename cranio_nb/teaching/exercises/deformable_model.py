@@ -10,7 +10,7 @@ from ...curves import cubic, spiral
 from ...stages.deformable_model import inflate
 from .task import Answer, Exercise, small_head
 
-_PX = 0.45  # mm: the paper's pixel
+_PX = 0.45  # mm: 512 pixels over a head
 
 
 def _pressures():
