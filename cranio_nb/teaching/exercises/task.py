@@ -34,9 +34,11 @@ class Exercise:
     mistakes : tuple of (callable, str)
         Typical wrong answers, and what to say to whoever gives them.
     hints : tuple of str
-        From a push to nearly all.
+        From a push to nearly all, never the whole line.
     praise : str
         What a right answer has shown.
+    shows : tuple of (callable, str) or None
+        Answer -> what of it is shown beside the right one, and its unit; None for the answer itself, in `unit`.
     """
 
     cases: Callable[[], list[tuple[Any, ...]]]
@@ -48,6 +50,7 @@ class Exercise:
     mistakes: tuple[tuple[Callable[..., Any], str], ...]
     hints: tuple[str, ...]
     praise: str
+    shows: tuple[Callable[[Any], Any], str] | None = None
 
 
 @cache
