@@ -25,6 +25,8 @@ REASONS = {
     ("pipeline/trial.py", "TemporaryDirectory"): "masks for a child process, in the system's folder of such files",
     ("pipeline/trial.py", "save"): "into that folder",
     ("teaching/build.py", "TemporaryDirectory"): "where a lesson runs",
+    ("teaching/grading/running.py", "TemporaryDirectory"): "where what is handed in runs",
+    ("teaching/grading/pages.py", "mkdir"): "in the staged folder",
     ("teaching/classroom.py", "mkdtemp"): "a lesson's own new folder",
     ("teaching/classroom.py", "copytree"): "into that folder",
     ("drawing/described.py", "save"): "into memory",

@@ -73,20 +73,28 @@ def html(out: Path, folder: Path) -> None:
 
 @lessons.command()
 @click.argument("notebooks", nargs=-1, required=True, type=PATH)
+@click.option("--out", type=PATH, default=Path("grades"), show_default=True, help="Folder for table and pages.")
 @debug
-def grade(notebooks: tuple[Path, ...]) -> None:
-    """Run notebooks that students hand in, and print the points of each exercise.
+def grade(notebooks: tuple[Path, ...], out: Path) -> None:
+    """Run notebooks that students hand in; write a table, a page for each and a page on the class.
 
-    They are run as programs on this machine, with your rights: use a machine that you can spare.
+    They are run as programs on this machine, with your rights: use a machine that you can spare. A student is called
+    by the folder of the notebook, or by the file where its name is not just that of the lesson.
 
     \b
     Example:
-      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
+      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb --out grades
     """
-    from ..teaching.build import points
+    from ..teaching.grading import marks, pages
 
-    for path in notebooks:
-        found = points(path)
-        total = sum(got for got, _ in found.values())
-        each = "  ".join(f"{name}: {got}/{most}" for name, (got, most) in found.items())
-        click.echo(f"{path}  {total}/{sum(most for _, most in found.values())}  {each}")
+    paths = list(dict.fromkeys(notebooks))
+    check_writes(out, pages.FILES, {f"NOTEBOOKS ({path})": path for path in paths})
+    graded = []
+    for path, student in zip(paths, marks.students(paths), strict=True):
+        one = marks.grade(path, student)
+        each = "  ".join(f"{v.name}: {v.points}/{v.out_of}" for v in one.verdicts)
+        click.echo("  ".join(filter(None, [str(path), f"{one.points}/{one.out_of}", each, one.remark])))
+        graded.append(one)
+    pages.write_grades(graded, out)
+    for name in pages.FILES:
+        click.echo(out / name)
