@@ -18,6 +18,7 @@ def lessons() -> None:
       cranio-nb lessons build
       cranio-nb lessons html pages
       cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
+      cranio-nb lessons export course --for nbgrader
     """
 
 
@@ -98,3 +99,28 @@ def grade(notebooks: tuple[Path, ...], out: Path) -> None:
     pages.write_grades(graded, out)
     for name in pages.FILES:
         click.echo(out / name)
+
+
+@lessons.command()
+@click.argument("out", type=PATH)
+@click.option("--for", "tool", type=click.Choice(("nbgrader", "otter")), required=True, help="The tool.")
+@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@debug
+def export(out: Path, tool: str, folder: Path) -> None:
+    """Write the lessons as assignments of nbgrader or Otter-Grader, which give the same points as the checks.
+
+    \b
+    Examples:
+      cranio-nb lessons export course --for nbgrader
+      cranio-nb lessons export course --for otter
+    """
+    from ..teaching.export.assignment import write_assignments
+    from ..teaching.export.nbgrader import NBGRADER
+    from ..teaching.export.otter import OTTER
+
+    chosen = {"nbgrader": NBGRADER, "otter": OTTER}[tool]
+    reads = {path.name: path for path in sorted(folder.glob("*.ipynb"))}
+    made = [chosen.place.format(lesson=path.stem) for path in reads.values()]
+    check_writes(out, {name.split("/")[0] for name in (*made, *chosen.files)}, reads)
+    for path in write_assignments(folder, out, chosen):
+        click.echo(path)
