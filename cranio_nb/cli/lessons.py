@@ -8,18 +8,40 @@ import click
 
 from .options import PATH, check_writes, debug
 
+shipped = click.option(
+    "--folder", type=PATH, show_default="those of the package", help="Holds executed lessons, NN_topic.ipynb."
+)
+
 
 @click.group()
 def lessons() -> None:
-    """Make the lesson notebooks from their texts; grade what students hand in.
+    """Copy the lessons to work in, grade what is handed in, make the notebooks from their texts.
 
     \b
     Examples:
+      cranio-nb lessons copy lessons
       cranio-nb lessons build
       cranio-nb lessons html pages
       cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
       cranio-nb lessons export course --for nbgrader
     """
+
+
+@lessons.command()
+@click.argument("out", type=PATH, metavar="DIR")
+@debug
+def copy(out: Path) -> None:
+    """Copy the lessons that come with the package to DIR: solved ones, and those to fill in below DIR/exercises.
+
+    \b
+    Example:
+      cranio-nb lessons copy lessons && cranio-nb lab lessons
+    """
+    from ..teaching.shipped import copy_lessons, lesson_names, shipped_lessons
+
+    check_writes(out, {name.split("/")[0] for name in lesson_names()}, {"the lessons": shipped_lessons()})
+    made = copy_lessons(out)
+    click.echo(f"{len(made)} notebooks in {out}. Open them: cranio-nb lab {out}")
 
 
 @lessons.command()
@@ -55,17 +77,19 @@ def build(folder: Path, only: str, check: bool) -> None:
 
 @lessons.command()
 @click.argument("out", type=PATH)
-@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@shipped
 @debug
-def html(out: Path, folder: Path) -> None:
+def html(out: Path, folder: Path | None) -> None:
     """Write the lessons as web pages, every picture with its description; nothing is run.
 
     \b
     Example:
       cranio-nb lessons html pages
     """
+    from ..teaching.shipped import shipped_lessons
     from ..teaching.web_pages import write_pages
 
+    folder = folder or shipped_lessons()
     notebooks = sorted(folder.glob("*.ipynb"))
     check_writes(out, [f"{path.stem}.html" for path in notebooks], {path.name: path for path in notebooks})
     for path in write_pages(folder, out):
@@ -104,9 +128,9 @@ def grade(notebooks: tuple[Path, ...], out: Path) -> None:
 @lessons.command()
 @click.argument("out", type=PATH)
 @click.option("--for", "tool", type=click.Choice(("nbgrader", "otter")), required=True, help="The tool.")
-@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@shipped
 @debug
-def export(out: Path, tool: str, folder: Path) -> None:
+def export(out: Path, tool: str, folder: Path | None) -> None:
     """Write the lessons as assignments of nbgrader or Otter-Grader, which give the same points as the checks.
 
     \b
@@ -117,7 +141,9 @@ def export(out: Path, tool: str, folder: Path) -> None:
     from ..teaching.export.assignment import write_assignments
     from ..teaching.export.nbgrader import NBGRADER
     from ..teaching.export.otter import OTTER
+    from ..teaching.shipped import shipped_lessons
 
+    folder = folder or shipped_lessons()
     chosen = {"nbgrader": NBGRADER, "otter": OTTER}[tool]
     reads = {path.name: path for path in sorted(folder.glob("*.ipynb"))}
     made = [chosen.place.format(lesson=path.stem) for path in reads.values()]

@@ -157,7 +157,11 @@ def _sources(folder: Path, only: str) -> list[Path]:
     found = sorted((folder / "src").glob(f"{only}*.py"))
     if not found:
         message = f"No lesson texts were found in {folder.name}/src."
-        raise InputRefused("NoLessons", message, "Run this in the project's folder, or name the folder of notebooks.")
+        raise InputRefused(
+            "NoLessons",
+            message,
+            "The texts are in the project's repository: run this there, or name its folder of notebooks.",
+        )
     return found
 
 

@@ -15,7 +15,8 @@ from .lesson_text import make_notebook, tags
 
 _TO_STUDENTS = (
     "*This is the copy to work in. Run the cells from the top. Where you meet `raise NotImplementedError`, put your "
-    "own lines in its place, then run the check below it. Solutions and expected pictures are folded away: try first.*"
+    "own lines in its place, then run the check below it. Solutions and expected pictures are folded away: try first. "
+    "The whole lesson, solved, is the notebook of the same name in the folder above.*"
 )
 _NUMBER = re.compile(r"check\.exercise\(\"(\d+\.\d+)\"")
 
