@@ -27,6 +27,8 @@ REASONS = {
     ("teaching/build.py", "TemporaryDirectory"): "where a lesson runs",
     ("teaching/grading/running.py", "TemporaryDirectory"): "where what is handed in runs",
     ("teaching/grading/pages.py", "mkdir"): "in the staged folder",
+    ("teaching/export/assignment.py", "mkdir"): "in the staged folder",
+    ("teaching/shipped.py", "mkdir"): "in the staged folder",
     ("teaching/classroom.py", "mkdtemp"): "a lesson's own new folder",
     ("teaching/classroom.py", "copytree"): "into that folder",
     ("drawing/described.py", "save"): "into memory",

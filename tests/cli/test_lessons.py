@@ -2,9 +2,11 @@
 
 from pathlib import Path
 
+import pytest
 from cli_runs import cranio
 
 from cranio_nb.teaching import build, web_pages
+from cranio_nb.teaching.exercises import LESSONS
 from cranio_nb.teaching.grading import marks
 from cranio_nb.teaching.grading.marks import HandIn
 from cranio_nb.teaching.verdict import Verdict
@@ -23,6 +25,24 @@ def test_a_check_fails_on_problems_and_writes_nothing(monkeypatch):
     assert (result.exit_code, result.stdout, result.stderr) == (1, "", "04 is older than its text.\n")
     monkeypatch.setattr(build, "out_of_step", lambda folder, only: [])
     assert cranio("lessons", "build", "--check").exit_code == 0
+
+
+def test_copies_are_made_once_and_never_over_what_was_worked_in(tmp_path):
+    made = cranio("lessons", "copy", tmp_path / "mine")
+    assert made.exit_code == 0 and f"cranio-nb lab {tmp_path / 'mine'}" in made.stdout
+    assert cranio("lessons", "copy", tmp_path / "mine").exit_code == 0
+    path = tmp_path / "mine" / "exercises" / "00_tour.ipynb"
+    path.write_text("my work")
+    assert cranio("lessons", "copy", tmp_path / "mine").exit_code != 0
+    assert path.read_text() == "my work"
+
+
+@pytest.mark.parametrize("tool", ["nbgrader", "otter"])
+def test_assignments_are_written_for_every_lesson(tmp_path, tool):
+    made = cranio("lessons", "export", tmp_path / "course", "--for", tool)
+    assert made.exit_code == 0
+    written = [path for path in map(Path, made.stdout.split()) if path.suffix == ".ipynb"]
+    assert [path.stem for path in written] == list(LESSONS) and all(path.is_file() for path in written)
 
 
 def test_html_prints_each_page(monkeypatch, tmp_path):
