@@ -69,7 +69,7 @@ def exercise(name: str, answer: Callable[..., Any], *, hint: int = 0) -> Verdict
     except _NoAnswerError as error:
         return Verdict(str(name), 0, len(cases), str(error), hint=_hint(task, hint))
     # a point for each case whose answer is near enough to the right one
-    good = [error_of(task, yours, mine) <= task.tolerance for yours, mine in zip(found, right, strict=True)]
+    good = [error_of(task, yours, mine) <= task.answer.tolerance for yours, mine in zip(found, right, strict=True)]
     if all(good):
         return Verdict(str(name), len(cases), len(cases), f"Right: {task.praise}")
     wrong = good.index(False)
@@ -126,9 +126,9 @@ def _called(cases: list[tuple[Any, ...]], number: int) -> str:
 
 def _compared(task: Exercise, yours: Any, mine: Any) -> str:
     """The student's answer beside the right one, as the exercise shows them."""
-    if task.shows is None:
-        return side_by_side(yours, mine, task.unit)
-    show, unit = task.shows
+    if task.answer.shows is None:
+        return side_by_side(yours, mine, task.answer.unit)
+    show, unit = task.answer.shows
     try:
         return side_by_side(show(yours), show(mine), unit)
     except Exception:  # whatever a function of ours meets in an answer of any form

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .exercises import Exercise
+from .exercises.task import Answer
 
 _ALIKE = 1e-6  # relative
 _ORDER = ("first", "second", "third", "fourth")
@@ -48,7 +49,7 @@ def diagnose(task: Exercise, cases: list[tuple[Any, ...]], right: list[Any], fou
         or _handed_back(cases, found)
         or _by_form(found, right)
         or _by_rule(found, right)
-        or _far(task, max(errors))
+        or _far(task.answer, max(errors))
     )
 
 
@@ -66,7 +67,7 @@ def error_of(task: Exercise, value: Any, wanted: Any) -> float:
         In the exercise's unit; inf where they cannot be compared.
     """
     try:
-        error = float(task.error(value, wanted))
+        error = float(task.answer.error(value, wanted))
     except Exception:  # whatever comes of comparing with an answer of any form
         return float("inf")
     return error if np.isfinite(error) else float("inf")
@@ -74,7 +75,7 @@ def error_of(task: Exercise, value: Any, wanted: Any) -> float:
 
 def _alike(task: Exercise, value: Any, made: Any) -> bool:
     """Whether an answer is what a mistake makes, also where the exercise itself cannot compare them."""
-    if error_of(task, value, made) <= task.tolerance:
+    if error_of(task, value, made) <= task.answer.tolerance:
         return True
     one, other = _array(value), _array(made)
     return one is not None and other is not None and one.shape == other.shape and _near(one, other)
@@ -152,13 +153,13 @@ def _by_number(one: NDArray[np.float64], other: NDArray[np.float64]) -> str:
     return ""
 
 
-def _far(task: Exercise, worst: float) -> str:
+def _far(answer: Answer, worst: float) -> str:
     """How far off the answers are."""
     if np.isinf(worst):
-        return f"The answer does not have the right form: {task.form}."
+        return f"The answer does not have the right form: {answer.form}."
     far = f"{worst:.0f}" if worst >= 100 else f"{worst:.3g}"
-    unit = f" {task.unit}" if task.unit else ""
-    return f"Not yet: off by up to {far}{unit}; {task.tolerance:.2g} is allowed."
+    unit = f" {answer.unit}" if answer.unit else ""
+    return f"Not yet: off by up to {far}{unit}; {answer.tolerance:.2g} is allowed."
 
 
 def _array(value: Any) -> NDArray[np.float64] | None:
