@@ -34,7 +34,7 @@ check.exercise("4.1", apex)
 """
 HEADS = {number: TEXTS[number].splitlines()[0] for number in FUNCTIONS}
 STUB = "raise NotImplementedError()"
-# bodies of both functions, and what each exercise gives for them
+# bodies of both functions, and what each exercise gives for them; a warning costs nothing
 HAND_INS = {
     "shipped": (None, None, 3, 3),
     "other_words": (
@@ -45,7 +45,7 @@ HAND_INS = {
     ),
     "by_hand": (
         "h = np.sort(positions @ normal); d = np.sort(h[1:] - h[:-1]); m = len(d) // 2; return (d[m] + d[~m]) / 2",
-        "N = n - 1; return k * N / 2 * (N - N / 2) / 2",
+        "import warnings; warnings.warn('noise'); N = n - 1; return k * N / 2 * (N - N / 2) / 2",
         3,
         3,
     ),

@@ -117,6 +117,7 @@ def test_an_endless_loop_is_named_from_any_thread(monkeypatch, thread):
     ("answer", "said"),
     [
         (lambda k, n: k.shape, "AttributeError"),
+        (lambda k, n: asks(), "stopped with AsksError: no keyboard here"),
         (lambda k, n: recursive(k), "calls itself without end"),
         (lambda k, n: None if n > 30 else 1.0, "nothing for some of the cases"),
         (lambda k, n: np.sqrt(-1.0 * n), "not a finite number"),
@@ -124,10 +125,18 @@ def test_an_endless_loop_is_named_from_any_thread(monkeypatch, thread):
         (lambda k, n: [[1.0], [1.0, 2.0]], "right form"),
         (lambda k, n: np.ones(n), "One number is wanted"),
     ],
-    ids=["attribute", "recursion", "some", "root", "exit", "ragged", "many"],
+    ids=["attribute", "asks", "recursion", "some", "root", "exit", "ragged", "many"],
 )
 def test_says_what_the_function_did(answer, said):
     assert said in check.exercise("4.1", answer).message
+
+
+class AsksError(NotImplementedError):
+    """As a kernel without a keyboard raises it; it is not the stub's."""
+
+
+def asks():
+    raise AsksError("no keyboard here")
 
 
 def recursive(k):

@@ -1,6 +1,7 @@
 """Assignments for nbgrader: solutions between its marks, and one locked cell with points for each exercise.
 
-The cell ends with the points of the check, which nbgrader takes as partial credit; a cell that fails has none.
+The cell ends with the points of the check, which nbgrader takes as partial credit; a cell that fails or writes to the
+error stream would have none.
 """
 
 from __future__ import annotations
@@ -35,8 +36,13 @@ def _answer(question: Question, solution: str) -> list[NotebookNode]:
 
 
 def _check(question: Question) -> list[NotebookNode]:
-    text = f'verdict = check.exercise("{question.number}", {question.function})\nprint(verdict)\nverdict.points'
-    return [_marked(text, f"check-{question.key}", grade=True, locked=True, points=question.points)]
+    lines = ["import contextlib, io", "", "with contextlib.redirect_stderr(io.StringIO()):  # a warning is no mistake"]
+    lines += [
+        f'    verdict = check.exercise("{question.number}", {question.function})',
+        "print(verdict)",
+        "verdict.points",
+    ]
+    return [_marked("\n".join(lines), f"check-{question.key}", grade=True, locked=True, points=question.points)]
 
 
 def _marked(text: str, name: str, *, grade: bool = False, solution: bool = False, **more: Any) -> NotebookNode:

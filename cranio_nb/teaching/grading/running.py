@@ -6,6 +6,7 @@ interrupted, a flood of outputs is cut off, and a kernel that dies leaves what w
 
 from __future__ import annotations
 
+import logging
 import os
 import subprocess
 import tempfile
@@ -22,6 +23,8 @@ from ..build import QUIET
 CELL_S, NOTEBOOK_S = 300, 1200
 """Time for a cell, and for a notebook, after which each cell left gets a second only."""
 _MOST_OUTPUTS = 1000  # of a cell
+_SILENT = logging.getLogger(__name__)  # cells that fail are the student's affair, and are told in the verdicts
+_SILENT.disabled = True
 _TIMED_OUT = {"ename": "TimeoutError", "evalue": f"it did not end within {CELL_S} s", "traceback": []}
 
 
@@ -68,8 +71,8 @@ def run_hand_in(notebook: NotebookNode) -> str:
             allow_errors=True,
             kernel_name="python3",
             resources={"metadata": {"path": folder}},
+            log=_SILENT,
         )
-        client.log.disabled = True
         try:
             # what the kernel itself says to its terminal is not the teacher's business
             client.execute(env={**os.environ, **QUIET}, stderr=subprocess.DEVNULL)

@@ -59,6 +59,7 @@ def nbgrader(course, *arguments):
     assert done.returncode == 0, done.stderr[-2000:]
 
 
+@pytest.mark.filterwarnings("ignore:noise")
 @pytest.mark.parametrize("student", HAND_INS)
 def test_nbgrader_gives_the_points_of_the_checks(graded, student):
     *bodies, first, second = HAND_INS[student]
