@@ -79,7 +79,7 @@ def grade(path: Path, student: str) -> HandIn:
         Also where there is nothing to be run: then with no points, and a remark.
     """
     notebook, remark = read_hand_in(path)
-    cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
+    cells = notebook.cells
     remark = remark or run_hand_in(notebook)
     shown = {found.name: found for cell in cells for line in _lines(cell) if (found := read_verdict(line))}
     wanted = _exercises(path.stem, cells)

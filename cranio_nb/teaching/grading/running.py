@@ -11,12 +11,14 @@ import os
 import subprocess
 import tempfile
 import time
+import warnings
 from pathlib import Path
 from typing import Any
 
 import nbformat
 from nbclient import NotebookClient
 from nbformat import NotebookNode
+from nbformat.v4 import new_code_cell, new_notebook
 
 from ..build import QUIET
 
@@ -29,7 +31,7 @@ _TIMED_OUT = {"ename": "TimeoutError", "evalue": f"it did not end within {CELL_S
 
 
 def read_hand_in(path: Path) -> tuple[NotebookNode, str]:
-    """A notebook from disk, of any version.
+    """The code of a notebook from disk, of any version; nothing else of it can then do harm.
 
     Parameters
     ----------
@@ -38,14 +40,20 @@ def read_hand_in(path: Path) -> tuple[NotebookNode, str]:
     Returns
     -------
     notebook : NotebookNode
-        Without cells where the file cannot be read.
+        Of the cells of code alone, without outputs and tags; of none where the file cannot be read.
     remark : str
         Why it cannot; else empty.
     """
     try:
-        return nbformat.reads(path.read_text(encoding="utf-8"), as_version=4), ""
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # cells without ids, as older notebooks have them
+            given = nbformat.reads(path.read_text(encoding="utf-8"), as_version=4)
+        texts = [cell.source for cell in given.cells if cell.cell_type == "code"]
+        notebook = new_notebook(cells=[new_code_cell(text) for text in texts])
+        nbformat.validate(notebook)
+        return notebook, ""
     except Exception as error:  # whatever a damaged file makes the reader raise
-        return nbformat.v4.new_notebook(), f"The file cannot be read as a notebook ({type(error).__name__})."
+        return new_notebook(), f"The file cannot be read as a notebook ({type(error).__name__})."
 
 
 def run_hand_in(notebook: NotebookNode) -> str:
