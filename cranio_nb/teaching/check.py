@@ -21,6 +21,7 @@ import numpy as np
 
 from .diagnosis import diagnose, error_of
 from .exercises import EXERCISES, Exercise
+from .rules import Trial
 from .side_by_side import side_by_side
 from .time_limit import TookTooLongError, call_within
 from .verdict import Verdict
@@ -74,7 +75,14 @@ def exercise(name: str, answer: Callable[..., Any], *, hint: int = 0) -> Verdict
         return Verdict(str(name), len(cases), len(cases), f"Right: {task.praise}")
     wrong = good.index(False)
     compared = f"{_called(cases, wrong)}: {_compared(task, found[wrong], right[wrong])}."
-    return Verdict(str(name), sum(good), len(cases), diagnose(task, cases, right, found), compared, _hint(task, hint))
+    return Verdict(
+        str(name),
+        sum(good),
+        len(cases),
+        diagnose(task, Trial(answer, cases, right, found)),
+        compared,
+        _hint(task, hint),
+    )
 
 
 @cache

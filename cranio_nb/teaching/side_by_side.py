@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .rules import as_numbers
+
 _FEW = 6  # numbers that are shown one and all
 _DIGITS = (4, 6, 9, 15)  # as few as show the difference
 
@@ -33,7 +35,7 @@ def side_by_side(yours: Any, mine: Any, unit: str = "") -> str:
     >>> side_by_side([True, False, True], np.array([False, True, True]), "pixels")
     'yours and mine differ: 1 pixels too many, 1 missing'
     """
-    right, given = np.asarray(mine), _numbers(yours)
+    right, given = np.asarray(mine), as_numbers(yours)
     if given is None:
         return f"yours is {_kind(yours)}, mine {_kind(mine)}"
     if given.shape != right.shape:
@@ -49,20 +51,11 @@ def side_by_side(yours: Any, mine: Any, unit: str = "") -> str:
     return f"at [{place}] {_both(given[at].reshape(1), right[at].reshape(1), unit)}"
 
 
-def _numbers(value: Any) -> NDArray[Any] | None:
-    """An answer as an array of numbers or truth values; None where it is something else."""
-    try:
-        found = np.asarray(value)
-    except (TypeError, ValueError):  # rows of several lengths
-        return None
-    return found if found.dtype.kind in "biuf" else None
-
-
 def _kind(value: Any) -> str:
     """What sort of thing an answer is."""
     if value is None:
         return "nothing"
-    found = _numbers(value)
+    found = as_numbers(value)
     if found is None:
         return f"a {type(value).__name__}"
     if found.ndim == 0:

@@ -72,6 +72,14 @@ EXERCISES: dict[str, Exercise] = {
                 lambda h, c, w: (h > c) * 255,
                 "This is black and white only: between the ends of the window grey rises evenly.",
             ),
+            (
+                lambda h, c, w: np.clip((h - c - w / 2) / w, 0, 1) * 255,
+                "The window starts at centre - width / 2, not at centre + width / 2.",
+            ),
+            (
+                lambda h, c, w: np.clip((h - c + w / 2) * 255, 0, 255),
+                "Divide by width: at the high end the window has come to 255.",
+            ),
         ),
         hints=(
             "Where is 0? At centre - width / 2.",

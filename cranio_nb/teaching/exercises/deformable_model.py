@@ -93,6 +93,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda k, n: k * (n - 1) ** 2 / 8 * _PX,
                 "This is in mm of the paper's pixel; the height is wanted in px.",
             ),
+            (lambda k, n: k * (n - 2) ** 2 / 8, "N counts the steps between snaxels: N = n - 1."),
         ),
         hints=("At rest c'' = -k, with the end heights 0.", "c(i) = k i (N - i) / 2.", "Put i = N / 2, and N = n - 1."),
         praise="the apex does not know the width of the gap.",
@@ -142,6 +143,11 @@ EXERCISES: dict[str, Exercise] = {
                 lambda L, a, b, n: L**2 * (np.tan(a) - np.tan(b)) / (n - 1) ** 2,
                 "The length comes in once: a slope has no unit, a step has L / N px.",
             ),
+            (
+                lambda L, a, b, n: L * np.tan(a - b) / (n - 1) ** 2,
+                "The difference of the two slopes is wanted, not the slope of the difference.",
+            ),
+            (lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / n, "N is squared, and counts the steps: N = n - 1."),
         ),
         hints=(
             "The slope changes from tan theta0 to tan theta1 over N steps.",

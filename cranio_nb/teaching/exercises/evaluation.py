@@ -89,6 +89,11 @@ EXERCISES: dict[str, Exercise] = {
             ),
             (lambda a, b: np.percentile(_both_ways(a, b) ** 2, 95), "These are squares of distances."),
             (lambda a, b: cKDTree(b).query(a)[0].max(), "This is the largest distance, one way only."),
+            (lambda a, b: cKDTree(b).query(a)[0].mean(), "This is the mean distance, one way only."),
+            (
+                lambda a, b: np.percentile(cKDTree(b).query(a, k=2)[0], 95),
+                "k=2 takes the second nearest point too, and this is one way only.",
+            ),
         ),
         hints=(
             "spatial.cKDTree(b).query(a)[0] are the distances from a to b.",
@@ -158,6 +163,14 @@ EXERCISES: dict[str, Exercise] = {
                 "This turns single axes round; a leaning plane mixes them: measure along the normal.",
             ),
             (lambda p, n, o: -p, "This is a point reflection: only the part along the normal may change sign."),
+            (
+                lambda p, n, o: p - 2 * ((p - o) @ n),
+                "Distances taken off coordinates: go along the normal, distance[:, None] * normal.",
+            ),
+            (
+                lambda p, n, o: p - 2 * np.linalg.norm(p - o, axis=1)[:, None] * n,
+                "This is the distance from the origin given; from the plane it is (points - origin) @ normal.",
+            ),
         ),
         hints=(
             "How far is a point from the plane? (points - origin) @ normal.",

@@ -190,6 +190,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p: np.median(np.diff(p, axis=0), axis=0),
                 "From point to point the noise is as long as the step. Fit all points at once.",
             ),
+            (
+                lambda p: p.std(axis=0),
+                "The spreads of rows and columns have no sign: a line that falls looks like one that rises.",
+            ),
         ),
         hints=(
             "Centre the points first.",
@@ -242,6 +246,15 @@ EXERCISES: dict[str, Exercise] = {
                 "These are distances from 0, 0; a step is the difference of neighbours: np.diff.",
             ),
             (lambda p: np.linalg.norm(p - p[0]), "One number for all: take the norm along axis=1, and of the steps."),
+            (
+                lambda p: np.cumsum(np.abs(np.diff(p, axis=0)).max(axis=1)),
+                "This takes the longer side of each step, and no 0 in front: a step is the root of the sum of squares.",
+            ),
+            (
+                lambda p: np.append(0.0, np.cumsum(np.abs(np.diff(p, axis=0)).max(axis=1))),
+                "This takes the longer side of each step; a step is the root of the sum of squares.",
+            ),
+            (lambda p: np.arange(len(p)) * np.sqrt(2), "Not every step is a diagonal: take the length of each."),
         ),
         hints=(
             "np.diff gives the steps.",

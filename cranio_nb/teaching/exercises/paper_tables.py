@@ -156,6 +156,12 @@ EXERCISES: dict[str, Exercise] = {
                 lambda c, r: np.radians(np.arcsin(c / 2 / r)),
                 "np.radians goes from degrees to radians; the other way is np.degrees.",
             ),
+            (lambda c, r: np.arctan(c / 2 / r), "A sine, not a tangent; and in degrees."),
+            (lambda c, r: c / 2 / r, "This is the sine of the angle: np.arcsin, in degrees."),
+            (
+                lambda c, r: np.degrees(2 * np.arctan(c / 2 / r)),
+                "A sine, not a tangent; and theta itself, not the angle at the centre.",
+            ),
         ),
         hints=(
             "Draw the radius to one end and to the middle of the chord.",

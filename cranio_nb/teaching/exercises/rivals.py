@@ -204,6 +204,10 @@ EXERCISES: dict[str, Exercise] = {
             (lambda a, h: h / 3, "This is the mean of a cone; the cap's own volume is given."),
             (lambda a, h: h * (3 * a + h**2) / (6 * a**2), "In the volume of the cap a is squared."),
             (lambda a, h: h * (3 * a**2 + h**2) / 6 * a**2, "Brackets: a^2 stands below the line."),
+            (
+                lambda a, h: np.sqrt(a**2 + h**2),
+                "This is the way from the top of the cap to its rim; wanted is volume / area.",
+            ),
         ),
         hints=(
             "Mean depth = volume between cap and lid / area of the lid.",

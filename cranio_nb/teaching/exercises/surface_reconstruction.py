@@ -74,6 +74,10 @@ EXERCISES: dict[str, Exercise] = {
                 "This multiplies number by number: the volume is a . (b x c), with np.cross.",
             ),
             (lambda v, f: ConvexHull(v).volume, "The volume of the hull: it has no sign, and a head is not convex."),
+            (
+                lambda v, f: (v[f[:, 0]] @ np.cross(v[f[:, 1]], v[f[:, 2]]).T).sum() / 6,
+                "`@` takes every face with every other: multiply row by row, (a * ...).sum().",
+            ),
         ),
         hints=(
             "Each face and the origin make a tetrahedron.",
@@ -113,6 +117,9 @@ EXERCISES: dict[str, Exercise] = {
                 "These are distances from 0, 0, 0: a position has three numbers.",
             ),
             (lambda i, s: i * np.prod(s), "np.prod is the volume of a voxel: each axis has its own spacing."),
+            (lambda i, s: i * s.max(), "One spacing for all axes: each has its own."),
+            (lambda i, s: i * s**2, "The spacing comes in once: mm = voxels x mm per voxel."),
+            (lambda i, s: i + 0.5 * s, "A spacing is mm per voxel: multiply, do not add."),
         ),
         hints=(
             "How many mm is one step along each axis?",

@@ -286,6 +286,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda points, weights, t: _rational(points, weights, t).T,
                 "Rows and columns are exchanged: a row for every t.",
             ),
+            (
+                lambda points, weights, t: _bernstein(t, 1) @ points,
+                "The weights are not used, and the middle function is 2 t (1 - t).",
+            ),
         ),
         hints=(
             "A rational point is a weighted mean of the control points.",

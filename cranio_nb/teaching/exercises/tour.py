@@ -48,6 +48,13 @@ EXERCISES: dict[str, Exercise] = {
                 lambda m, s: int(m.sum() * np.prod(s) / 1000),
                 "The number was cut to a whole one: a hundredth of a cm3 counts here.",
             ),
+            *(
+                (
+                    lambda m, s, two=two: m.sum() * np.prod(np.take(s, two)) / 1000,
+                    "One of the three spacings is left out.",
+                )
+                for two in ((0, 1), (0, 2))
+            ),
         ),
         hints=(
             "Count the voxels first.",

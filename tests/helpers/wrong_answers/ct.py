@@ -18,6 +18,9 @@ WRONG = {
         ),
         ("return np.clip((hu - (centre - width / 2)) / (width / 2), 0, 1) * 255", "The window is width wide"),
         ("return (hu > centre) * 255", "This is black and white only"),
+        ("return np.clip((hu - centre + width / 2) * 255, 0, 255)", "Divide by width"),
+        ("return np.clip((hu - width / 2) / width, 0, 1) * 255", "The function does not use `centre`"),
+        ("return np.clip((hu - centre - width / 2) / width, 0, 1) * 255", "The window starts at centre - width / 2"),
     ],
     "1.2": [
         ("return affine[:3, :3].dot(index)", "origin"),
@@ -33,6 +36,9 @@ WRONG = {
         ("return affine[:3,:3] @ index - affine[:3,3]", "The origin is added"),
         ("return affine[:3,:3] @ (index + 0.5) + affine[:3,3]", "Half a voxel off"),
         ("return index + affine[:3,3]", "These are still voxels"),
+        ("return affine @ index", "stopped with ValueError"),
+        ("return affine[:3,:3] @ index * affine[:3,3]", None),
+        ("return np.diag(affine)[:3] * index + affine[:3,3]", None),
     ],
     "1.3": [
         ("z = sorted(positions[:, 2]); return np.median(np.diff(z))", "tilted"),
@@ -55,5 +61,9 @@ WRONG = {
             ),
             "z is not the height of a tilted slice",
         ),
+        ("return np.median(np.diff(positions, axis=0))", "The function does not use `normal`"),
+        ("return np.mean(positions @ normal)", None),
+        ("return np.median(np.diff(np.sort(positions @ normal))) / 2", "0.5 times the right"),
+        ("return np.median(np.diff(np.sort(positions[:, 0])))", "The function does not use `normal`"),
     ],
 }

@@ -30,6 +30,9 @@ WRONG = {
             "The outermost rows and columns are left out",
         ),
         ("return bone - ndimage.binary_erosion(bone)", "stopped with TypeError"),
+        ("return bone & ~ndimage.binary_opening(bone)", None),
+        ("return ndimage.sobel(bone.astype(float)) != 0", None),
+        ("return bone & ndimage.binary_dilation(~bone)", "At the edge of the image there is boundary"),
     ],
     "3.2": [
         ("a, b = np.polyfit(points[:, 0], points[:, 1], 1); return np.array([1, a])", "along a row"),
@@ -62,6 +65,13 @@ WRONG = {
         ),
         ("return np.ptp(points, axis=0)", "Height and width of the cloud have no sign"),
         ("d = np.diff(points, axis=0); return np.median(d, axis=0)", "From point to point the noise is as long as"),
+        ("d = points - points.mean(axis=0); return d.std(axis=0)", "The spreads of rows and columns have no sign"),
+        (
+            "d = points - points.mean(axis=0); return d[np.linalg.norm(d, axis=1).argmax()]",
+            "From the first point to the last",
+        ),
+        ("d = points[len(points)//2:].mean(0) - points[0]; return d", None),
+        ("return np.linalg.eig(points.T @ points)[1][:, 0]", None),
     ],
     "3.3": [
         ("return np.arange(len(points))", "counts points"),
@@ -89,5 +99,11 @@ WRONG = {
             "This is the part of the whole way",
         ),
         ("return np.linalg.norm(points - points[0])", "One number for all"),
+        ("return np.cumsum(np.abs(np.diff(points, axis=0)).max(axis=1))", "This takes the longer side of each step"),
+        ("return np.arange(len(points)) * np.sqrt(2)", "Not every step is a diagonal"),
+        (
+            ("d = np.linalg.norm(np.diff(points, axis=0), axis=1); return np.concatenate([[0], np.cumsum(d)])[::-1]"),
+            "These are the right values in turned order",
+        ),
     ],
 }

@@ -43,7 +43,7 @@ WRONG = {
             "v = [s['plane'] for s in slices if s['status'] == 'balloon']; return min(v), max(v)",
             "These are numbers of planes",
         ),
-        ("s = slices[0]; return min(s[key]), max(s[key])", None),
+        ("s = slices[0]; return min(s[key]), max(s[key])", "does not use `side`"),
         (
             (
                 "v = sorted(slices, key=lambda s: s['plane']); "
@@ -51,6 +51,12 @@ WRONG = {
             ),
             "These are the values of the lowest and the",
         ),
+        (
+            "v = [s[key] for s in slices if s['status'] == 'balloon']; return np.min(v), np.max(v)",
+            "Both sides are thrown together",
+        ),
+        (("v = [s[key][side] for s in slices if s['status'] == 'balloon']; return [min(v), max(v), np.mean(v)]"), None),
+        ("v = [s[key][side] for s in slices if s['plane'] > 21]; return min(v), max(v)", None),
     ],
     "10.2": [
         ("return np.arcsin(chord / (2 * radius))", "radians"),
@@ -72,5 +78,10 @@ WRONG = {
         ("return np.degrees(np.arctan2(chord, radius))", "Half the chord over the radius is a sine"),
         ("return np.arcsin(chord / 2 / radius) * 360 / np.pi", "This is the angle at the centre"),
         ("return 180 - np.degrees(np.arcsin(chord / 2 / radius))", "This is theta1"),
+        ("return np.arctan(chord / 2 / radius)", "A sine, not a tangent; and in "),
+        ("return np.degrees(2 * np.arctan(chord / 2 / radius))", "A sine, not a tangent; and the"),
+        ("return np.degrees(np.arcsin(radius / chord))", "There is NaN or infinity in the answer"),
+        ("return np.degrees(np.arccos(1 - chord**2 / 2 / radius**2))", "This is the angle at the centre"),
+        ("return chord / 2 / radius", "This is the sine of the angle"),
     ],
 }

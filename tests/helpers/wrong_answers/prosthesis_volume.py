@@ -22,6 +22,10 @@ WRONG = {
         ("return outer - inner", "This is the step from curve to curve"),
         ("return np.hstack([outer, inner[::-1]])", "Joined side by side"),
         ("return np.concatenate([outer[:1], inner[::-1]])", None),
+        ("return np.concatenate([inner, outer])", "The outline crosses itself like a bow tie"),
+        ("return np.concatenate([outer, outer[::-1]])", "The function does not use `inner`"),
+        ("return np.concatenate([outer, inner[::2]])", None),
+        ("return np.unique(np.concatenate([outer, inner]), axis=0)", None),
     ],
     "5.2": [
         ("return region", "Bone is still"),
@@ -37,6 +41,10 @@ WRONG = {
         ("return bone", "This is the bone that is there already"),
         ("return ~region", "This is everything outside the region"),
         ("return np.logical_not(bone)", "This is everything that is not bone"),
+        ("return region | ~bone", None),
+        ("return ~region & ~bone", "All that is too much lies outside `region`"),
+        ("return region & ~region", "The function does not use `bone`"),
+        ("return np.where(bone, region, 0)", "This is just the part that must go"),
     ],
     "5.3": [
         ("return convex_hull_image(bone) & ~bone", "whole difference"),

@@ -67,8 +67,12 @@ WRONG = {
         ("return np.pi * h * (3 * a**2 + h**2) / 6 / (np.pi * h**2)", "h is the height"),
         ("return h * (3 * a + h**2) / (6 * a**2)", "In the volume of the cap a is squared"),
         ("return np.pi * h * (3 * a**2 + h**2) / 6 / (np.pi * (a**2 + h**2))", "This is the area of the cap"),
-        ("return a / 2", None),
+        ("return a / 2", "does not use `h`"),
         ("return np.pi * h * (3 * a**2 + h**2) / (6 * np.pi) * a**2", "Brackets: a^2 stands below the"),
+        ("return h * (3 * a**2 + h**2) / (3 * a**2)", "2 times the right"),
+        ("return np.sqrt(a**2 + h**2)", "This is the way from the top of the cap to"),
+        ("return h - h / 2 * a", None),
+        ("return h * 0.5 + h**2 / 6", "The function does not use `a`"),
     ],
     "8.3": [
         ("return convex_hull_image(bone) & ~bone", "brain's place"),
@@ -88,5 +92,9 @@ WRONG = {
         ("return convex_hull_image(bone) & convex_hull_image(inner) & ~bone", "This is the inside of the head"),
         ("return bone", "This is the bone that is there already"),
         ("return convex_hull_image(bone) & ~convex_hull_image(inner) | bone", "The bone is in it"),
+        ("return convex_hull_image(bone) & ~convex_hull_image(bone & inner)", None),
+        ("return convex_hull_image(inner) & ~inner", "The function does not use `bone`"),
+        ("return convex_hull_image(bone | inner) & ~bone", "The brain's place is in it"),
+        ("return ~bone", "The function does not use `inner`"),
     ],
 }

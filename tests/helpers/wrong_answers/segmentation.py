@@ -62,6 +62,15 @@ WRONG = {
             ),
             "Opening eats thin bone",
         ),
+        (
+            ("l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); s[0] = 0; return l == s.argmax()"),
+            "This is the background",
+        ),
+        (
+            "l, n = ndimage.label(mask); s = ndimage.sum(mask, l, range(n)); return l == np.argmax(s)",
+            "Label 1 is the part that is met first",
+        ),
+        ("return ndimage.label(mask)[0] == 2", "All that is too much lies in `mask`"),
     ],
     "2.2": [
         ("return ndimage.binary_fill_holes(mask)", "brain"),
@@ -110,6 +119,18 @@ WRONG = {
                 "return mask | small[l]"
             ),
             "What touches the border is outside",
+        ),
+        (
+            (
+                "from skimage.morphology import remove_small_holes\n"
+                "    return remove_small_holes(mask, max_size=max_pixels)"
+            ),
+            "What touches the border is outside",
+        ),
+        ("return mask | ndimage.binary_dilation(mask)", "The function does not use `max_pixels`"),
+        (
+            "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); return (s <= max_pixels)[l]",
+            "These are the small parts of the background",
         ),
     ],
 }

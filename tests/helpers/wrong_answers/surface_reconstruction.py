@@ -21,7 +21,7 @@ WRONG = {
             ),
             "This is the area of the surface",
         ),
-        ("return len(faces) / 6", None),
+        ("return len(faces) / 6", "does not use `vertices`"),
         (
             ("a, b, c = vertices[:, 0], vertices[:, 1], vertices[:, 2]; return np.dot(a, np.cross(b, c)) / 6"),
             "stopped with ValueError",
@@ -53,6 +53,22 @@ WRONG = {
             ),
             None,
         ),
+        (
+            (
+                "a, b, c = (vertices[faces[:, i]] for i in range(3)); "
+                "return np.einsum('ij,ij->', a, np.cross(b - a, c - a)) / 3"
+            ),
+            "Twice too much",
+        ),
+        (
+            ("a, b, c = (vertices[faces[:, i]] for i in range(3)); return (a @ np.cross(b, c).T).sum() / 6"),
+            "`@` takes every face with every other",
+        ),
+        (
+            ("a, b, c = (vertices[faces[:, i]] for i in range(3)); return np.einsum('ij,ij->', b, np.cross(a, c)) / 6"),
+            "The sign is wrong",
+        ),
+        ("return len(vertices)", "The function does not use `faces`"),
     ],
     "6.2": [
         ("return index", "still voxels"),
@@ -73,5 +89,9 @@ WRONG = {
         ("return index * np.prod(spacing)", "np.prod is the volume of a voxel"),
         ("return np.linalg.norm(index * spacing, axis=1)", "These are distances from 0"),
         ("return (index + 1) * spacing", "A voxel off: index 0 lies at 0"),
+        ("return index * spacing ** 2", "The spacing comes in once"),
+        ("return index * spacing.max()", "One spacing for all axes"),
+        ("return index + 0.5 * spacing", "A spacing is mm per voxel"),
+        ("return spacing * index[0]", None),
     ],
 }

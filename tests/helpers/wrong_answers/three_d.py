@@ -35,6 +35,10 @@ WRONG = {
         ),
         ("return np.gradient(np.eye(n), axis=0)", "np.gradient takes neighbours on both sides"),
         ("d = np.diff(np.eye(n), order, axis=0); return d.T @ d", "This is D^T D"),
+        ("return np.eye(n, k=1) - np.eye(n)", "This has n rows"),
+        ("d = np.diff(np.eye(n), axis=0); return d @ d.T", "The function does not use `order`"),
+        ("return np.diff(np.eye(n - order), order, axis=0)", None),
+        ("return np.diff(np.diff(np.eye(n), axis=0), axis=0)", "This is the second difference"),
     ],
     "9.2": [
         (
@@ -137,6 +141,21 @@ WRONG = {
         (
             (
                 "B = np.column_stack([(1 - t) ** 2, 2 * (1 - t), t**2]); s = B * weights; "
+                "return s @ points / s.sum(axis=1, keepdims=True)"
+            ),
+            None,
+        ),
+        (
+            (
+                "B = np.column_stack([(1 - t) ** 2, 2 * t * (1 - t), t**2]); "
+                "return B @ (weights[:, None] * points) / weights.sum()"
+            ),
+            "The divisor changes along the curve",
+        ),
+        ("B = np.column_stack([(1 - t) ** 2, t * (1 - t), t**2]); return B @ points", "The weights are not used"),
+        (
+            (
+                "B = np.column_stack([(1 - t) ** 3, 3 * t * (1 - t), t**3]); s = B * weights; "
                 "return s @ points / s.sum(axis=1, keepdims=True)"
             ),
             None,

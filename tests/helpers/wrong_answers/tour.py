@@ -18,6 +18,10 @@ WRONG = {
         ("return mask.sum() / np.prod(spacing)", "Divided where it should multiply"),
         ("return len(mask) * np.prod(spacing) / 1000", "len counts the planes"),
         ("return mask.sum() * np.mean(spacing)**3 / 1000", "The three spacings are not equal"),
+        ("return mask.sum() * spacing[0] * spacing[1] / 1000", "One of the three spacings is left out"),
+        ("return np.sum(mask * spacing[0]) / 1000", None),
+        ("return mask.sum() * np.prod(spacing) // 1000", "The number was cut to a whole one"),
+        ("return mask.sum() * np.prod(spacing) * 1000", "1e+06 times the right"),
     ],
     "0.2": [
         ("return np.sum(a & b) / np.sum(a | b)", "Jaccard"),
@@ -33,5 +37,9 @@ WRONG = {
         ("return (a & b).sum()", "This counts what is shared"),
         ("return round(2 * (a & b).sum() / (a.sum() + b.sum()), 2)", None),
         ("return (a & b).sum() / max(a.sum(), b.sum())", None),
+        ("return 2 * np.sum(a == b) / (a.sum() + b.sum())", None),
+        ("return 2 * (a & b).mean() / (a.sum() + b.sum())", "1.387e-06 times the right"),
+        ("return (a ^ b).sum() / (a.sum() + b.sum())", "This is 1 - Dice"),
+        ("return 2 * (a & b).sum() / a.sum() + b.sum()", None),
     ],
 }
