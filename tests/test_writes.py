@@ -26,7 +26,7 @@ REASONS = {
     ("pipeline/trial.py", "save"): "into that folder",
     ("teaching/build.py", "TemporaryDirectory"): "where a lesson runs",
     ("teaching/grading/running.py", "TemporaryDirectory"): "where what is handed in runs",
-    ("teaching/grading/pages.py", "mkdir"): "in the staged folder",
+    ("teaching/grading/grades_folder.py", "mkdir"): "in the staged folder",
     ("teaching/export/assignment.py", "mkdir"): "in the staged folder",
     ("teaching/shipped.py", "mkdir"): "in the staged folder",
     ("teaching/classroom.py", "mkdtemp"): "a lesson's own new folder",

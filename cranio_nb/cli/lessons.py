@@ -110,18 +110,18 @@ def grade(notebooks: tuple[Path, ...], out: Path) -> None:
     Example:
       cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb --out grades
     """
-    from ..teaching.grading import marks, pages
+    from ..teaching.grading import grades_folder, marks
 
     paths = list(dict.fromkeys(notebooks))
-    check_writes(out, pages.FILES, {f"NOTEBOOKS ({path})": path for path in paths})
+    check_writes(out, grades_folder.FILES, {f"NOTEBOOKS ({path})": path for path in paths})
     graded = []
     for path, student in zip(paths, marks.students(paths), strict=True):
         one = marks.grade(path, student)
         each = "  ".join(f"{v.name}: {v.points}/{v.out_of}" for v in one.verdicts)
         click.echo("  ".join(filter(None, [str(path), f"{one.points}/{one.out_of}", each, one.remark])))
         graded.append(one)
-    pages.write_grades(graded, out)
-    for name in pages.FILES:
+    grades_folder.write_grades(graded, out)
+    for name in grades_folder.FILES:
         click.echo(out / name)
 
 
