@@ -262,7 +262,7 @@ check.exercise("1.2", to_world)
 # %% [markdown]
 # **Exercise 1.3.** The distance between slices. You get the positions (n, 3) of the slices in mm, in the order of the
 # files (any order), and the unit normal of the slices (section 4). Return the median distance between neighbours. Why
-# the median? One slice may be missing, and the others should not pay for it.
+# the median? One slice may be missing and another too close to its neighbour, and the rest should not pay for them.
 
 
 # %% tags=["solution"]
