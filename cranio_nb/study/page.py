@@ -51,7 +51,7 @@ def study_page(
     """
     target = target_of(columns)
     known = [key for key in MEASURES if np.isfinite(columns[key]).any()]
-    return page_template("study.html").render(
+    return page_template("study_page.html").render(
         version=version("cranio-nb"),
         n_rows=len(columns["key"]),
         n_cases=len(set(columns["case"])),
