@@ -161,8 +161,10 @@ def _extra() -> Iterator[None]:
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] not in ("distributed", "pyarrow"):
             raise
-        remedy = 'Install them: pip install -e ".[study]".'
-        raise CranioError("NoExtra", "Studies need packages that are not installed here.", remedy) from None
+        from ..teaching.shipped import install_command
+
+        message = "Studies need packages that are not installed here."
+        raise CranioError("NoExtra", message, f"Install them: {install_command('study')}") from None
 
 
 @contextmanager
