@@ -36,7 +36,6 @@ from .parts import (
     annotate_slice,
     coloured,
     draw_colour_scale,
-    draw_sides,
     left_window,
     put_view,
 )
@@ -241,7 +240,7 @@ def _mirror_view(
     left, top = _HALF + 20, 80
     canvas.place(coloured(residual[np.ix_(rows, rows)], _TOP), left, top)
     canvas.text(left, top - 14, "the vault from above: residual (mm)")
-    draw_sides(canvas, (left, top, side, side))
+    canvas.sides((left, top, side, side))
     draw_colour_scale(canvas, (left, top + side + 16), side, _TOP)
     known = residual[np.isfinite(residual)]
     line = "Turned by {turn_deg:g} and leaning by {lean_deg:g} degrees, shifted by {shift_mm:g} mm: ".format(**move)

@@ -24,7 +24,7 @@ from ....vault.ray_grid import RadiusMap
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from ..parts import HEIGHT, WIDTH, draw_sides
+from ..parts import HEIGHT, WIDTH
 from .scene import Array, Scene, error_line, make_scene
 
 MAX_STEPS = 40
@@ -151,7 +151,7 @@ def _draw_net(canvas: Canvas, way: Way, one: Sheet, axes: Array) -> None:
     for points in (*one.control, *one.control.swapaxes(0, 1)):
         inset.line(place(points), ORANGE, width=1)
     inset.dots(place(one.control.reshape(-1, 3)), ORANGE, radius=3, edge=BLACK)
-    draw_sides(inset, (0, 0, _SIDE, _TOP), axes[0], -axes[1])
+    inset.sides((0, 0, _SIDE, _TOP), axes[0], -axes[1])
     canvas.inlay(inset, 0, 0)
 
 
