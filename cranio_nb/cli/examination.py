@@ -19,7 +19,7 @@ _NEEDED = tuple(
     "lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
 )
 _OPTIONAL = {
-    "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
+    "lab": ("jupyterlab", "anywidget", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
     "study": ("distributed", "pyarrow", "bokeh"),
     "view": ("pyvista", "vtk", "trame-pyvista", "aiohttp"),
 }

@@ -12,7 +12,7 @@ from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
 from ..mesh import Mesh
 from ..output.pages import Shot, shot
-from ..stages.segmentation import bone_of
+from ..stages.segmentation import segment
 from ..stages.surface_reconstruction import extract_surface
 from ..volume import Volume
 from .cases import Case, load_case
@@ -95,7 +95,7 @@ def _case_shot(case: Case, why: str) -> Shot | None:
     """A case from the side of what is missing; None where it cannot be read or holds no bone."""
     try:
         scan, truth = load_case(case)
-        bone = bone_of(scan, None)
+        bone = segment(scan)
     except Exception:  # whatever keeps it from being read is among the reasons already
         return None
     missing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp)) if truth is None else extract_surface(truth)
