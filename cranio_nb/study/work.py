@@ -18,7 +18,6 @@ from ..pipeline.preparation import openings_to_close
 from ..pipeline.survey import survey_scan
 from ..pipeline.trial import Attempt, Contender, status_of
 from ..vault.opening_size import measure_opening
-from ..volume import Volume
 from .cases import Case, load_case
 
 Row = dict[str, Any]
@@ -54,16 +53,6 @@ class Batch:
         return [Batch(self.case, self.threshold_hu, (c,), (k,), (v,)) for c, k, v in runs]
 
 
-@dataclass(frozen=True, eq=False)
-class _Skull:
-    """A case as the methods get it."""
-
-    bone: Volume
-    openings: tuple[Opening, ...]
-    truth: Volume | None
-    facts: Row
-
-
 def do_batch(batch: Batch, methods: bytes, attempt: Attempt) -> list[Row]:
     """Do every run of a batch.
 
@@ -82,16 +71,19 @@ def do_batch(batch: Batch, methods: bytes, attempt: Attempt) -> list[Row]:
     """
     unpack_methods(methods)
     try:
-        skull = _prepare(batch)
-        truth = None if skull.truth is None else Reference.of(skull.truth, skull.bone, skull.openings[0])
+        scan, truth = load_case(batch.case)
+        seen = survey_scan(scan, batch.threshold_hu)
+        openings = tuple(one.opening for one in openings_to_close(seen))
+        reference = None if truth is None else Reference.of(truth, seen.bone, openings[0])
     except Exception as error:
         return failed_rows(batch, **_reason(error))
+    del scan, truth  # the methods get the bone only
     rows = _heads(batch)
     for row, contender in zip(rows, batch.contenders, strict=True):
-        row |= skull.facts
+        row |= _sizes(openings)
         try:
-            trial = attempt(skull.bone, skull.openings, contender)
-            measures = measure(trial, skull.bone, truth)
+            trial = attempt(seen.bone, openings, contender)
+            measures = measure(trial, seen.bone, reference)
             row |= {"status": trial.status, "code": trial.code, "message": trial.message} | measures
         except Exception as error:  # what cannot be measured is a row, too
             row |= _reason(error)
@@ -130,14 +122,10 @@ def _heads(batch: Batch) -> list[Row]:
     ]
 
 
-def _prepare(batch: Batch) -> _Skull:
-    """Read or make the case, and find what is to be closed, as `cranio-nb design` does."""
-    scan, truth = load_case(batch.case)
-    seen = survey_scan(scan, batch.threshold_hu)
-    closed = tuple(one.opening for one in openings_to_close(seen))
-    size = measure_opening(closed[0])
-    facts = {"place": size.place, "length_mm": size.length, "n_openings": len(closed)}
-    return _Skull(seen.bone, closed, truth, facts)
+def _sizes(openings: tuple[Opening, ...]) -> Row:
+    """What the skull is like: place and length of the largest opening, and how many there are."""
+    largest = measure_opening(openings[0])
+    return {"place": largest.place, "length_mm": largest.length, "n_openings": len(openings)}
 
 
 def _reason(error: Exception) -> dict[str, str]:
