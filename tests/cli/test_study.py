@@ -9,11 +9,11 @@ from executors import Inline
 from studies import rows_for, version
 
 from cranio_nb.cli.study import _duration
-from cranio_nb.study.cluster import Workers
 
 pytest.importorskip("distributed", reason="the extra `study` is not installed")
 
 from cranio_nb.study import cluster, report, run
+from cranio_nb.study.cluster import Workers
 
 PLAN = {
     "cases": [{"kind": "phantom", "size": "tiny", "defects": ["burr_hole"], "seeds": [0, 1, 2]}],
