@@ -17,6 +17,7 @@ def lessons() -> None:
     Examples:
       cranio-nb lessons build
       cranio-nb lessons html pages
+      cranio-nb lessons site pages
       cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
     """
 
@@ -69,6 +70,29 @@ def html(out: Path, folder: Path) -> None:
     check_writes(out, [f"{path.stem}.html" for path in notebooks], {path.name: path for path in notebooks})
     for path in write_pages(folder, out):
         click.echo(path)
+
+
+@lessons.command()
+@click.argument("out", type=PATH)
+@click.option("--folder", type=PATH, default=Path(), show_default=True, help="The project's folder, with its README.")
+@click.option("--only", default="", metavar="NN", help="Only lessons whose name starts so, e.g. 04.")
+@click.option("--repository", default="", metavar="OWNER/NAME", help="On GitHub: adds links to Binder and Colab.")
+@debug
+def site(out: Path, folder: Path, only: str, repository: str) -> None:
+    """Build the lessons, the docs and the API reference as a web site that opens from disk.
+
+    The lessons are shown as they ran; only what draws their panels is run again. Needs the extra "site".
+
+    \b
+    Examples:
+      cranio-nb lessons site pages
+      cranio-nb lessons site pages --only 04
+    """
+    from ..teaching.site.build import NAMES, build_site
+
+    reads = {name: folder / name for name in ("README.md", "docs", "notebooks")}
+    check_writes(out, NAMES, reads)
+    click.echo(build_site(folder, out, only, repository, click.echo))
 
 
 @lessons.command()
