@@ -50,7 +50,7 @@ widgets.balloon(ends, bone.to_voxel(opening.head_centre)[1:], background=bone.vo
 SLIDERS = (
     ("new matplotlib figure: slice", "peer", "Arrow"),
     ("ct_viewer: slice", "slice (", "Arrow"),
-    ("threshold: HU", "lowest HU", "Arrow"),
+    ("threshold: HU", "threshold: bone", "Arrow"),
     ("features: reach", "reach", "Page"),  # half a millimetre may leave the picture as it is
     ("balloon: k", "k: pressure", "Page"),
 )

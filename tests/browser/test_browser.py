@@ -84,7 +84,7 @@ def test_sliders_move_pictures_the_balloon_plays_and_the_scene_is_there(open_not
     page = open_notebook(small)
     assert no_errors(page) == []
 
-    for slider, key in (("reach", "PageUp"), ("pressure (px", "PageUp")):
+    for slider, key in (("reach", "PageUp"), ("k: pressure", "PageUp")):
         box = panel(page, slider)
         image, status = box.locator("img").first, box.locator("[role=status]").first
         source, words, before = image.get_attribute("src"), status.inner_text(), shot(image)
@@ -93,7 +93,7 @@ def test_sliders_move_pictures_the_balloon_plays_and_the_scene_is_there(open_not
         assert until(lambda t=status, w=words: t.inner_text() != w), slider
         assert np.abs(shot(image) - before).max() > 60, slider
 
-    box = panel(page, "pressure (px")
+    box = panel(page, "k: pressure")
     status = box.locator("[role=status]").first
     press(box, re.compile("^step$"), "End")
     press(box, re.compile("^step$"), "Home")

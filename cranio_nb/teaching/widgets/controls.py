@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import KW_ONLY, dataclass
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,12 +23,16 @@ class Slider:
     ----------
     name : str
     label : str
-        Names it, with its unit.
+        What it is.
     low, high, value, step : float
+    unit : str
+        Of its values; empty for a mere number.
     log : bool
-        Whether values are spaced evenly in their logarithm, as `stops`; `step` is not used then.
+        Whether values are spaced evenly in their logarithm, ten in each decade; `step` is not used then.
     player : bool
         Whether it can be played.
+    expert : bool
+        Whether it is folded away at first.
     """
 
     name: str
@@ -37,27 +41,39 @@ class Slider:
     high: float
     value: float
     step: float = 1.0
+    _: KW_ONLY
+    unit: str = ""
     log: bool = False
     player: bool = False
+    expert: bool = False
 
     @property
     def stops(self) -> tuple[float, ...]:
-        """The values of a logarithmic slider, ten in each decade.
+        """All values that it takes.
 
         Returns
         -------
         tuple of float
-            From `low` to `high`.
+            From `low` to `high`; ints where its steps are whole.
 
         Examples
         --------
         >>> Slider("dt", "time step", 1, 10, 1, log=True).stops
         (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0, 10.0)
+        >>> Slider("n", "snaxels", 7, 13, 9, 2).stops
+        (7, 9, 11, 13)
         """
+        if not self.log:
+            return tuple(self.taken(self.low + i * self.step) for i in range(self._n_steps + 1))
         decades = range(math.floor(math.log10(self.low)), math.ceil(math.log10(self.high)) + 1)
         # written as decimals, so that 6.3 / 10 is 0.63
         values = (float(f"{number}e{decade}") for decade in decades for number in _DECADE)
         return tuple(value for value in values if self.low <= value <= self.high)
+
+    @property
+    def _n_steps(self) -> int:
+        """Whole steps between its ends."""
+        return math.floor((self.high - self.low) / self.step + 1e-9)
 
     def taken(self, value: float) -> float:
         """The value that a hand on the slider reaches, nearest to the one asked for.
@@ -80,12 +96,9 @@ class Slider:
         """
         if self.log:
             return min(self.stops, key=lambda stop: abs(stop - value))
-        if self.whole:
-            nearest = self.low + self.step * round((value - self.low) / self.step)
-            return int(min(max(nearest, self.low), self.high))
+        nearest = self.low + self.step * min(max(round((value - self.low) / self.step), 0), self._n_steps)
         # tenths have no exact float: rounded, so that they print as they were typed
-        nearest = round(self.low + self.step * round((value - self.low) / self.step), 9)
-        return float(min(max(nearest, self.low), self.high))
+        return int(nearest) if self.whole else float(round(nearest, 9))
 
     @property
     def whole(self) -> bool:
@@ -105,17 +118,23 @@ class Choice:
     Parameters
     ----------
     name, label : str
-    options : tuple of str
+    stops : tuple of str
+        All words that it takes.
     value : str
+    expert : bool
+        Whether it is folded away at first.
     """
 
     name: str
     label: str
-    options: tuple[str, ...]
+    stops: tuple[str, ...]
     value: str
+    _: KW_ONLY
+    expert: bool = False
+    unit: ClassVar[str] = ""
 
     def taken(self, value: str) -> str:
-        """The word, if it is one of the options.
+        """The word, if it is one of its own.
 
         Parameters
         ----------
@@ -130,8 +149,8 @@ class Choice:
         InputRefused
             ``UnknownOption``.
         """
-        if value not in self.options:
-            known = ", ".join(map(repr, self.options))
+        if value not in self.stops:
+            known = ", ".join(map(repr, self.stops))
             raise InputRefused("UnknownOption", f"{self.name} cannot be {value!r}.", f"It takes: {known}.")
         return value
 
@@ -144,11 +163,17 @@ class Switch:
     ----------
     name, label : str
     value : bool
+    expert : bool
+        Whether it is folded away at first.
     """
 
     name: str
     label: str
     value: bool
+    _: KW_ONLY
+    expert: bool = False
+    unit: ClassVar[str] = ""
+    stops: ClassVar[tuple[bool, ...]] = (False, True)
 
     def taken(self, value: Any) -> bool:
         """On or off.
@@ -165,6 +190,7 @@ class Switch:
 
 
 Control = Slider | Choice | Switch
+"""Each has a `name`, a `label`, a `unit`, its `stops`, the `value` it begins with, and may be for an `expert`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +201,7 @@ class View:
     ----------
     rgb : ndarray of uint8, shape (H, W, 3)
     line : str
-        One line in words and numbers, the same on every run.
+        One line in words and numbers, the same on every run: the picture's caption.
     limits : dict of str to float
         New upper ends of sliders, by name.
     off : tuple of str

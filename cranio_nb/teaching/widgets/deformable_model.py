@@ -22,6 +22,7 @@ from .panel import Panel
 
 PRESETS = ("paper: k as set below", "tangent pressure: k from the ends", "spiral: k along its curve")
 MAX_STEPS = 300
+_K_UNIT = "px per index\N{SUPERSCRIPT TWO}"
 _SIDE, _CHARTS = 512, 340  # px
 _SEEN, _ABOVE = 1.2, 0.75  # of the picture's side, and of the part above the chord, in lengths of the chord
 _SIDES = {"A": (-1, 0), "P": (1, 0), "R": (0, -1), "L": (0, 1)}  # of the patient, as slice (row, col)
@@ -85,15 +86,14 @@ def balloon(
     true = None if truth is None else frame.to_chord(truth)
     scene = Scene(ends, frame, _background(background), true, px)
     run = lru_cache(maxsize=64)(lambda *values: record_inflation(frame.length, angles, *values))
-    k = "k: pressure (px per index\N{SUPERSCRIPT TWO}, outward positive)"
     controls = (
         Choice("preset", "pressure and start curve", PRESETS, PRESETS[0]),
-        Slider("pressure", k, -0.1, 0.4, stage.PAPER_PRESSURE, 0.002),
-        Slider("n", "snaxels, N + 1", 7, 61, 21, 2),
-        Slider("tension", "w\N{SUBSCRIPT ONE}: tension (ds\N{SUPERSCRIPT TWO})", 0.1, 5, 1, 0.1),
-        Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity (ds\N{SUPERSCRIPT FOUR})", 0.1, 5, 1, 0.1),
-        Slider("dt", "dt: time step", 0.1, 10, 1, log=True),
-        Slider("tol", "tol: at rest when ||dc|| is below (px)", 1e-4, 1, 1e-3, log=True),
+        Slider("pressure", "k: pressure outwards", -0.1, 0.4, stage.PAPER_PRESSURE, 0.002, unit=_K_UNIT),
+        Slider("n", "snaxels, N + 1", 7, 61, 21, 2, expert=True),
+        Slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1, 5, 1, 0.1, unit="ds\N{SUPERSCRIPT TWO}", expert=True),
+        Slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, 5, 1, 0.1, unit="ds\N{SUPERSCRIPT FOUR}", expert=True),
+        Slider("dt", "dt: time step", 0.1, 10, 1, log=True, expert=True),
+        Slider("tol", "tol: at rest when ||dc|| is below", 1e-4, 1, 1e-3, unit="px", log=True, expert=True),
         Slider("step", "step", 0, MAX_STEPS, 0, player=True),
     )
     alt = (

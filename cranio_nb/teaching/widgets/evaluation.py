@@ -42,8 +42,8 @@ def distances(prosthesis: Prosthesis, truth: Prosthesis) -> Panel:
     top = max(0.2, round(float(np.percentile(maps["outer"].distances, 99)), 1))
     controls = (
         Choice("side", "side of the prosthesis", tuple(SIDES), "outer"),
-        Slider("top_mm", "upper end of the scale (mm)", 0.1, 5.0, top, 0.1),
-        Slider("limit_mm", "distance asked about (mm)", 0.0, 5.0, 0.5, 0.1),
+        Slider("top_mm", "upper end of the scale", 0.1, 5.0, top, 0.1, unit="mm"),
+        Slider("limit_mm", "distance asked about", 0.0, 5.0, 0.5, 0.1, unit="mm"),
     )
     alt = "One side of the prosthesis coloured by its distance from the true surface, and a histogram of distances."
     return Panel(controls, lambda side, **values: _view(maps[side], side, **values), alt=alt)

@@ -47,8 +47,8 @@ def features(bone: Volume, plane: int, *, opening: Volume | None = None) -> Pane
     part = Slices(bone, opening)
     controls = (
         Slider("plane", f"slice (0 to {bone.shape[0] - 1})", 0, bone.shape[0] - 1, plane),
-        Slider("skip_mm", "skip: left out at the cut (mm)", 0, 20, 4.5, 0.5),
-        Slider("reach_mm", "reach: fitted after that (mm)", 1, 40, 10, 0.5),
+        Slider("skip_mm", "skip: left out at the cut", 0, 20, 4.5, 0.5, unit="mm"),
+        Slider("reach_mm", "reach: fitted after that", 1, 40, 10, 0.5, unit="mm"),
     )
     alt = (
         "Bone of a slice with outer boundary, inner boundary, spine and convex hull; two close-ups show the boundary "

@@ -174,12 +174,16 @@ def _running_loop() -> asyncio.AbstractEventLoop | None:
 
 
 def _widget(control: Control) -> Any:
-    look: dict[str, Any] = {"description": control.label, "style": _LABEL, "layout": _WIDE}
+    look: dict[str, Any] = {"description": _title(control), "style": _LABEL, "layout": _WIDE}
     if isinstance(control, Choice):
-        return ipw.Dropdown(options=control.options, value=control.value, **look)
+        return ipw.Dropdown(options=control.stops, value=control.value, **look)
     if isinstance(control, Switch):
         return ipw.Checkbox(value=control.value, indent=True, **look)
     return _slider(control, look)
+
+
+def _title(control: Control) -> str:
+    return f"{control.label} ({control.unit})" if control.unit else control.label
 
 
 def _slider(control: Slider, look: dict[str, Any]) -> Any:

@@ -21,10 +21,12 @@ class Panel:
     Parameters
     ----------
     controls : sequence of Control
-    picture : callable
+    draw : callable
         Values by name -> `View`; a pure function.
     alt : str
         What the picture shows, in words.
+    presets : dict of str to dict, optional
+        Settings to go to at once: their name -> values by name of the control.
     actions : dict of str to callable, optional
         Buttons: label -> what to do with the panel, returning a line to show.
     slow : bool
@@ -34,19 +36,40 @@ class Panel:
     def __init__(
         self,
         controls: tuple[Control, ...],
-        picture: Callable[..., View],
+        draw: Callable[..., View],
         *,
         alt: str,
+        presets: dict[str, dict[str, Any]] | None = None,
         actions: dict[str, Callable[[Any], str]] | None = None,
         slow: bool = False,
     ) -> None:
         self.controls = {control.name: control for control in controls}
         self.values: dict[str, Any] = {control.name: control.value for control in controls}
         self.alt = alt
+        self.presets = dict(presets or {})
         self.actions = dict(actions or {})
         self.slow = slow
-        self._picture = picture
-        self.view = picture(**self.values)
+        self._draw = draw
+        self.view = self.first = draw(**self.values)
+
+    def picture(self, **values: Any) -> View:
+        """The picture of a setting, whatever the panel shows now; nothing is moved.
+
+        Parameters
+        ----------
+        **values
+            By name of the control, each one of its `stops`; what is not given is as at the start.
+
+        Returns
+        -------
+        View
+            A setting that cannot be drawn: the first picture, faded, and a line that says why.
+        """
+        start = {name: control.value for name, control in self.controls.items()}
+        try:
+            return self._draw(**start | values)
+        except CranioError as problem:
+            return View(self.first.rgb // 2 + 127, str(problem))
 
     def set(self, **values: Any) -> Panel:
         """Move controls and draw at once.
@@ -80,7 +103,7 @@ class Panel:
         return self
 
     def update(self, values: dict[str, Any]) -> View:
-        """Take new values and draw; a setting that cannot be drawn keeps the picture and says why.
+        """Take new values and draw.
 
         Parameters
         ----------
@@ -92,10 +115,7 @@ class Panel:
         View
         """
         self.values = self.values | values
-        try:
-            self.view = self._picture(**self.values)
-        except CranioError as problem:
-            self.view = View(self.view.rgb // 2 + 127, str(problem))
+        self.view = self.picture(**self.values)
         return self.view
 
     @cached_property

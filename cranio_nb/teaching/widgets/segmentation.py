@@ -39,8 +39,8 @@ def threshold(ct: Volume) -> Panel:
     last = ct.shape[0] - 1
     controls = (
         Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
-        Slider("threshold_hu", "lowest HU of bone", -200, 1500, stage.BONE_HU, 5),
-        Slider("max_hole_mm2", "fill holes up to (mm\N{SUPERSCRIPT TWO})", 0, 200, 60, 5),
+        Slider("threshold_hu", "threshold: bone from", -200, 1500, stage.BONE_HU, 5, unit="HU"),
+        Slider("max_hole_mm2", "fill holes up to", 0, 200, 60, 5, unit="mm\N{SUPERSCRIPT TWO}"),
         Switch("parts", "colour the pieces", False),
     )
     histogram = count_hu(ct.voxels[:, ::2, ::2])

@@ -111,15 +111,15 @@ def tuner(case: Case) -> Tuner:
     controls = (
         Choice("slices", "slices", SLICES, SLICES[1]),
         _slider("directions", "directions of the fans"),
-        _slider("skip_mm", "skip: left out at the cut (mm)", 0.5),
-        _slider("reach_mm", "reach: fitted after that (mm)", 0.5),
-        _slider("coupling_mm", "tangents shared over (mm)", 0.5),
-        Switch("own", "set k by hand (else from the end tangents)", False),
-        _slider("pressure_mm", "k: pressure (mm per index\N{SUPERSCRIPT TWO})", 0.002, value=0.062),
-        _slider("n_snaxels", "snaxels, N + 1", 2),
-        _slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1),
-        _slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1),
-        Switch("smooth", "surface without stairs", True),
+        _slider("skip_mm", "skip: left out at the cut", 0.5),
+        _slider("reach_mm", "reach: fitted after that", 0.5),
+        _slider("coupling_mm", "tangents shared over", 0.5, expert=True),
+        Switch("own", "set k by hand (else from the end tangents)", False, expert=True),
+        _slider("pressure_mm", "k: pressure", 0.002, value=0.062, expert=True),
+        _slider("n_snaxels", "snaxels, N + 1", 2, expert=True),
+        _slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1, expert=True),
+        _slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, expert=True),
+        Switch("smooth", "surface without stairs", True, expert=True),
     )
     # the scores at the start, to compare with
     first = made(*(control.value for control in controls))
@@ -179,10 +179,10 @@ def options_of(
     }
 
 
-def _slider(name: str, label: str, step: float = 1.0, value: float | None = None) -> Slider:
+def _slider(name: str, label: str, step: float = 1.0, *, value: float | None = None, **more: Any) -> Slider:
     """A slider over the usual part of an option's range, from its default, or a value where that is none."""
     option = options_declared("slicewise")[name]
-    return Slider(name, label, *option.span, option.default if value is None else value, step)
+    return Slider(name, label, *option.span, option.default if value is None else value, step, unit=option.unit, **more)
 
 
 Measured = tuple[tuple[float, ...], DistanceMap]

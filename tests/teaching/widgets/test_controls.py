@@ -45,3 +45,21 @@ def test_a_word_that_is_no_option_is_refused_with_those_that_are():
     with pytest.raises(InputRefused, match="inner") as refusal:
         Choice("side", "side", ("outer", "inner"), "outer").taken("left")
     assert refusal.value.code == "UnknownOption"
+
+
+@pytest.mark.parametrize(
+    "control",
+    [
+        Slider("width", "width", 50, 4000, 1500, 10, unit="HU"),
+        Slider("k", "k", -0.1, 0.4, 0.062, 0.002),
+        Slider("n", "snaxels", 8, 61, 20, 2),
+        Slider("dt", "time step", 0.1, 10, 1, log=True),
+        Choice("side", "side", ("outer", "inner"), "outer"),
+        Switch("on", "on", True),
+    ],
+)
+def test_stops_are_what_a_control_takes_and_its_start_is_one(control):
+    assert control.value in control.stops and len(set(control.stops)) == len(control.stops)
+    assert [control.taken(stop) for stop in control.stops] == list(control.stops)
+    if isinstance(control, Slider):
+        assert control.stops[0] == control.low and control.high - control.stops[-1] < control.step

@@ -9,6 +9,7 @@ from PIL import Image
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.teaching import widgets
+from cranio_nb.teaching.widgets.controls import Slider, View
 
 
 def make_all(ct, skull, opened, arch, made, true):
@@ -71,7 +72,31 @@ def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
         panel.front.controls[control].value = value
         assert panel.front.image.value != before, name
         assert panel.values[control] == value
-        assert close(pixels_of(panel), panel._picture(**panel.values).rgb), name
+        assert close(pixels_of(panel), panel.picture(**panel.values).rgb), name
+
+
+def test_the_picture_of_a_setting_is_that_of_the_panel_set_to_it_and_moves_nothing(static, arch):
+    panel, moved = widgets.balloon(arch, INSIDE), widgets.balloon(arch, INSIDE).set(step=3, pressure=0.1)
+    seen = panel.picture(step=3, pressure=0.1)
+    assert (seen.rgb == moved.view.rgb).all() and seen.line == moved.view.line
+    assert panel.values["step"] == 0 and panel.view is panel.first
+
+
+def test_a_setting_that_cannot_be_drawn_says_why_on_a_faded_picture():
+    def draw(n):
+        if n > 1:
+            raise InputRefused("TooMany", "There are too many.")
+        return View(np.full((4, 4, 3), 30 * n, np.uint8), f"{n} drawn")
+
+    panel = widgets.Panel((Slider("n", "number", 0, 3, 1),), draw, alt="A grey square.")
+    refused = panel.picture(n=2)
+    assert refused.line == "There are too many." and (refused.rgb == 30 // 2 + 127).all()
+
+
+def test_every_control_begins_on_one_of_its_stops_and_so_do_the_presets(panels):
+    for panel in panels.values():
+        settings = [{name: control.value for name, control in panel.controls.items()}, *panel.presets.values()]
+        assert all(value in panel.controls[name].stops for some in settings for name, value in some.items())
 
 
 def test_a_panel_refuses_a_control_it_does_not_have(static, arch):

@@ -56,9 +56,9 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
     except InputRefused:  # no plane of symmetry: the third slider has no effect
         pass
     controls = (
-        Slider("second_mm", "a: second order smooths over (mm)", 0.0, 20.0, 1.3, 0.1),
-        Slider("third_mm", "b: third order smooths over (mm)", 0.0, 20.0, 1.8, 0.1),
-        Slider("mirror_mm", "c: curvature of the other side (mm)", 0.0, 20.0, 1.6, 0.1),
+        Slider("second_mm", "a: second order smooths over", 0.0, 20.0, 1.3, 0.1, unit="mm"),
+        Slider("third_mm", "b: third order smooths over", 0.0, 20.0, 1.8, 0.1, unit="mm"),
+        Slider("mirror_mm", "c: curvature of the other side", 0.0, 20.0, 1.6, 0.1, unit="mm"),
     )
     bend = lru_cache(maxsize=64)(lambda **lengths: _bend(scene, **lengths))
     alt = "The vault as a map, coloured by how far the plate lies off the bone; beside it a profile through the hole."
