@@ -20,7 +20,7 @@ from .needed_cells import Shown, shown_by
 from .panel_html import panel_html
 from .turntable import all_round, turntable
 
-_FRAMES, _SLOW_FRAMES = 140, 24  # pictures of a panel
+_FRAMES, _SLOW_FRAMES = 320, 24  # pictures of a panel
 _COLAB = "# On Colab this installs the package"
 
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Sequence
+from importlib import import_module
 from pathlib import Path
 from urllib.parse import quote
 
@@ -112,10 +113,17 @@ def _write_api(folder: Path) -> None:
     trees = [_rst_tree("", ["face"])]
     for title, modules in API.items():
         for module in modules:
-            body = f".. automodule:: cranio_nb.{module}\n   :members:\n"
-            (folder / f"{module}.rst").write_text(_heading(module) + body, "utf-8")
+            (folder / f"{module}.rst").write_text(_module_page(module), "utf-8")
         trees.append(_rst_tree(title, modules))
     (folder / "index.rst").write_text(_heading("API reference") + "\n".join(trees), "utf-8")
+
+
+def _module_page(name: str) -> str:
+    """A module with its public members, without what it imports."""
+    module = import_module(f"cranio_nb.{name}")
+    foreign = [key for key, value in vars(module).items() if getattr(value, "__module__", "") not in ("", module.__name__)]
+    options = f"   :members:\n   :exclude-members: {', '.join(foreign)}\n"
+    return _heading(name) + f".. automodule:: {module.__name__}\n{options}"
 
 
 def _heading(text: str) -> str:
