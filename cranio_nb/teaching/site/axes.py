@@ -61,12 +61,19 @@ def axes_of(panel: Panel, text: str, n_frames: int) -> tuple[Axis, ...]:
     """
     main = [control for control in panel.controls.values() if not control.expert]
     wanted = {control.name: wanted_values(panel, control, text) for control in main}
-    counts = share_frames([len(control.stops) for control in main], n_frames)
+    most = [_most_stops(control, wanted[control.name]) for control in main]
     axes = []
-    for control, n in zip(main, counts, strict=True):
+    for control, n in zip(main, share_frames(most, n_frames), strict=True):
         stops = thinned(control, n, wanted[control.name]) if isinstance(control, Slider) else control.stops
         axes.append(Axis(control, stops, stops.index(panel.values[control.name])))
     return tuple(axes)
+
+
+def _most_stops(control: Control, wanted: set[Any]) -> int:
+    """How many of a control's stops may be drawn."""
+    if isinstance(control, Slider) and control.ahead is not None:
+        return control.ahead + len(wanted)
+    return len(control.stops)
 
 
 def wanted_values(panel: Panel, control: Control, text: str) -> set[Any]:
@@ -131,7 +138,7 @@ def thinned(slider: Slider, n: int, wanted: set[float]) -> tuple[float, ...]:
     slider : Slider
         One that can be played gets ever longer steps, for a film begins fast.
     n : int
-        How many there may be without the wanted ones.
+        About how many: fewer where it says how many are drawn ahead, and the wanted ones come on top.
     wanted : set of float
         Stops of the slider.
 
@@ -146,8 +153,11 @@ def thinned(slider: Slider, n: int, wanted: set[float]) -> tuple[float, ...]:
     (0, 25, 30, 50, 75, 100)
     >>> thinned(Slider("step", "step", 0, 100, 0, player=True), 5, set())
     (0, 2, 9, 31, 100)
+    >>> thinned(Slider("centre", "centre", -1000, 2000, 300, ahead=0), 9, {40, 300})
+    (40, 300)
     """
     last = len(slider.stops) - 1
+    n = n if slider.ahead is None else slider.ahead
     places = np.expm1(np.linspace(0, np.log1p(last), n)) if slider.player else np.linspace(0, last, n)
     kept = {slider.stops[int(place)] for place in np.rint(places)} | wanted
     return tuple(stop for stop in slider.stops if stop in kept)
@@ -168,7 +178,7 @@ def presets_on(axes: Sequence[Axis], panel: Panel) -> dict[str, Mapping[str, Any
         Name of the preset -> values by name of the control, of the axes only.
     """
     moved = {axis.control.name for axis in axes}
-    found = {}
+    found: dict[str, Mapping[str, Any]] = {}
     for name, values in panel.presets.items():
         if all(panel.values[other] == value for other, value in values.items() if other not in moved):
             found[name] = {other: value for other, value in values.items() if other in moved}

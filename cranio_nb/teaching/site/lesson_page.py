@@ -20,7 +20,7 @@ from .needed_cells import Shown, shown_by
 from .panel_html import panel_html
 from .turntable import all_round, turntable
 
-_FRAMES, _SLOW_FRAMES = 320, 24  # pictures of a panel
+_FRAMES, _SLOW_FRAMES = 220, 24  # pictures of a panel
 _COLAB = "# On Colab this installs the package"
 
 
@@ -105,5 +105,3 @@ def _panel(page: LessonPage, shown: Shown, text: str, name: str, folder: str) ->
     frames = draw_frames(panel, axes)
     page.files.update(frames.files)
     return panel_html(panel, frames, f"panel-{name}", folder)
-
-

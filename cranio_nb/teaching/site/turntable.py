@@ -38,8 +38,8 @@ def turntable(scene: Scene) -> Panel:
         Controls ``turn``, 0 from the front and 90 from the patient's left, and ``rise``, both in degrees.
     """
     x, y, z = scene.towards
-    turn = Slider("turn", "seen from: 0 front, 90 left side", -180, 165, 0, 15, unit="\N{DEGREE SIGN}")
-    rise = Slider("rise", "seen from above", -30, 60, 30, 30, unit="\N{DEGREE SIGN}")
+    turn = Slider("turn", "seen from: 0 front, 90 left side", -180, 165, 0, 15, unit="degrees")
+    rise = Slider("rise", "seen from above", -30, 60, 30, 30, unit="degrees")
     budget = _MAX_FACES // len(scene.parts)
     solids = []
     for part in scene.parts:
@@ -80,12 +80,14 @@ def _view(scene: Scene, solids: list[Solid], turn: int, rise: int) -> View:
     radius = np.linalg.norm(points - middle, axis=1).max()
     px_mm = 2 * radius / _HEIGHT
     seen = render(solids, axes[2], px_mm=px_mm)
-    canvas = Canvas(_WIDTH, _HEIGHT + _FOOT)
+    # the picture begins at its lowest corner; the middle of the scene goes to the middle of the canvas
     corner = (points @ axes[:2].T).min(axis=0)
-    canvas.place((255 * seen.rgb).astype(np.uint8), *(np.array([_WIDTH, _HEIGHT]) / 2 - (axes[:2] @ middle - corner) / px_mm))
+    x, y = np.array([_WIDTH, _HEIGHT]) / 2 - (axes[:2] @ middle - corner) / px_mm
+    canvas = Canvas(_WIDTH, _HEIGHT + _FOOT)
+    canvas.place((255 * seen.rgb).astype(np.uint8), x, y)
     _annotate(canvas, scene, axes, px_mm)
     names = ", ".join(part.label for part in scene.parts if part.label)
-    line = f"3-D scene{': ' + names if names else ''}, seen from {turn}\N{DEGREE SIGN} and {rise}\N{DEGREE SIGN} above."
+    line = f"3-D scene{': ' + names if names else ''}, seen from {turn} degrees and {rise} degrees above."
     return View(canvas.array(), line)
 
 
@@ -96,9 +98,9 @@ def _annotate(canvas: Canvas, scene: Scene, axes: NDArray[np.float64], px_mm: fl
         canvas.legend(6, 6, named)
     for letter, direction in _SIDES.items():
         right, down, _ = axes @ np.array(direction, float)
-        if np.hypot(right, down) > 0.4:  # else it points at the viewer, or away
-            at = 0.47 * np.array([right * _WIDTH, down * _HEIGHT]) + np.array([_WIDTH, _HEIGHT]) / 2
-            canvas.text(*at, letter, size=14, anchor="mm", halo=True)
+        if np.hypot(right, down) > 0.7:  # else it lies on the head, or behind it
+            x, y = (0.5 + 0.47 * right) * _WIDTH, (0.5 + 0.47 * down) * _HEIGHT
+            canvas.text(x, y, letter, size=14, anchor="mm", halo=True)
     length = round_length(0.2 * _WIDTH * px_mm)
     canvas.scale_bar(14, _HEIGHT + 40, length / px_mm, f"{length:g} mm")
     if scene.top is not None:

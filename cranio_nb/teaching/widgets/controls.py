@@ -33,6 +33,9 @@ class Slider:
         Whether it can be played.
     expert : bool
         Whether it is folded away at first.
+    ahead : int, optional
+        How many of its stops a page without a kernel draws ahead, beside those that presets and text name; as many as
+        there is room for when not given.
     """
 
     name: str
@@ -46,6 +49,7 @@ class Slider:
     log: bool = False
     player: bool = False
     expert: bool = False
+    ahead: int | None = None
 
     @property
     def stops(self) -> tuple[float, ...]:
