@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ..errors import InputRefused
 from .options import PATH, check_writes, debug
 
 
@@ -93,6 +94,31 @@ def site(out: Path, folder: Path, only: str, repository: str) -> None:
     reads = {name: folder / name for name in ("README.md", "docs", "notebooks")}
     check_writes(out, NAMES, reads)
     click.echo(build_site(folder, out, only, repository, click.echo))
+
+
+@lessons.command()
+@click.argument("number", metavar="NN")
+@click.argument("out", type=PATH)
+@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@debug
+def slides(number: str, out: Path, folder: Path) -> None:
+    """Write a lesson as slides for a lecture: figures large, panels alive, answers left out.
+
+    They open from disk in any browser. Needs the extra "site".
+
+    \b
+    Example:
+      cranio-nb lessons slides 04 talk
+    """
+    from ..teaching.site.slides import write_slides
+
+    found = sorted(folder.glob(f"{number}*.ipynb"))
+    if len(found) != 1:
+        names = ", ".join(path.name for path in found) or "none"
+        raise InputRefused("NotFound", f"One lesson was wanted that begins with {number!r}; found: {names}.")
+    (path,) = found
+    check_writes(out, (f"{path.stem}.html", f"{path.stem}_pictures", "reveal"), {path.name: path})
+    click.echo(write_slides(path, out))
 
 
 @lessons.command()

@@ -21,7 +21,8 @@ from .panel_html import panel_html
 from .turntable import all_round, turntable
 
 _FRAMES, _SLOW_FRAMES = 220, 24  # pictures of a panel
-_COLAB = "# On Colab this installs the package"
+COLAB = "# On Colab this installs the package"
+"""How the cell begins that prepares Colab."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +78,7 @@ def lesson_page(lesson: NotebookNode, folder: str) -> LessonPage:
 
 def _folding(cell: NotebookNode) -> list[str]:
     """What MyST-NB is told to leave out or to fold away."""
-    if cell.source.startswith(_COLAB):
+    if cell.source.startswith(COLAB):
         return ["remove-cell"]
     return ["hide-input"] if "solution" in tags(cell) else []
 

@@ -89,7 +89,8 @@ def needed(trees: Sequence[ast.Module], goals: Sequence[int]) -> set[int]:
 
 def _names(tree: ast.Module) -> tuple[set[str], set[str]]:
     """Names that a cell reads, and names that it gives; what changes an object reads it and gives it."""
-    reads, gives = set(), set()
+    reads: set[str] = set()
+    gives: set[str] = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Name):
             (reads if isinstance(node.ctx, ast.Load) else gives).add(node.id)
