@@ -27,7 +27,8 @@ API = {
     "Measures": ("evaluation.scores", "evaluation.paper_tables"),
 }
 """Modules that have a page, under their headings."""
-_TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE", "CITATION.cff")
+TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE", "CITATION.cff")
+"""Files of the project that the site holds beside its docs."""
 _BINDER = "https://mybinder.org/v2/gh/{repository}/HEAD?urlpath={path}"
 _COLAB = "https://colab.research.google.com/github/{repository}/blob/main/{path}"
 
@@ -49,11 +50,11 @@ def write_pages(project: Path, out: Path, lessons: Sequence[str]) -> None:
     InputRefused
         ``NoProject`` where a text is missing.
     """
-    missing = [name for name in _TEXTS if not (project / name).is_file()]
+    missing = [name for name in TEXTS if not (project / name).is_file()]
     if missing:
         message = f"The folder {project.name} holds no {', '.join(missing)}."
         raise InputRefused("NoProject", message, "Run this in a clone of the project.")
-    for name in _TEXTS[1:]:
+    for name in TEXTS[1:]:
         shutil.copy(project / name, out)
     shutil.copytree(project / "docs", out / "docs", ignore=shutil.ignore_patterns("*.py", "__pycache__"))
     docs = sorted(path.stem for path in (project / "docs").glob("*.md"))

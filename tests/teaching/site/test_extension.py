@@ -1,0 +1,25 @@
+"""Formulas become MathML: drawn by the browser, read aloud, without a script."""
+
+from types import SimpleNamespace
+from xml.etree import ElementTree
+
+import pytest
+
+pytest.importorskip("sphinx", reason='the extra "site" is not installed')
+
+
+@pytest.mark.parametrize("display", [False, True])
+def test_a_formula_is_well_formed_mathml(display):
+    nodes = pytest.importorskip("docutils.nodes")
+    from cranio_nb.teaching.site import extension
+
+    made = {}
+    app = SimpleNamespace(add_html_math_renderer=lambda name, *visits: made.update({name: visits}))
+    assert extension.setup(app)["parallel_read_safe"]
+    writer = SimpleNamespace(body=[])
+    with pytest.raises(nodes.SkipNode):
+        made["mathml"][int(display)][0](writer, nodes.math("", r"\frac{k N^2}{8}"))
+    (text,) = writer.body
+    tree = ElementTree.fromstring(text)
+    assert tree.tag.endswith("math") and (tree.get("display") == "block") == display
+    assert [leaf.text for leaf in tree.iter() if leaf.tag.endswith("}mn") or leaf.tag == "mn"] == ["2", "8"]
