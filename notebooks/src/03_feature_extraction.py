@@ -130,7 +130,7 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # 3. Move `reach` to 40 mm: where does the black line leave the pixels?
 
 # %% tags=["nbval-check-output"]
-panel = widgets.features(bone, plane, opening=opening.sheet)
+panel = widgets.features(bone, plane, opening=opening.sheet, case=case)
 panel
 
 # %% [markdown]

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.drawing.canvas import Canvas
+from cranio_nb.drawing.shading import view_axes
 from cranio_nb.mesh import Mesh
 from cranio_nb.teaching.widgets import parts
 
@@ -28,6 +29,21 @@ def test_a_pixel_fits_a_ball_of_any_direction(towards):
     points = rng.normal(size=(5000, 3))
     ball = Mesh(10 * points / np.linalg.norm(points, axis=1, keepdims=True), np.zeros((0, 3), int))
     assert parts.pixel_to_fit(ball, towards, 100) == pytest.approx(0.2, rel=0.01)
+
+
+def test_the_letters_are_those_of_the_view():
+    shown, wanted = Canvas(100, 80), Canvas(100, 80)
+    parts.draw_sides(shown, (0, 0, 100, 80), *view_axes((1, 0, 0))[:2])  # from the left: the face is at the left
+    for at, letter in (((88, 40), "P"), ((12, 40), "A"), ((50, 68), "I"), ((50, 12), "S")):
+        wanted.text(*at, letter, size=14, anchor="mm", halo=True)
+    assert (shown.array() == wanted.array()).all()
+
+
+def test_the_window_holds_what_is_shown_in_any_slice():
+    mask = np.zeros((2, 90, 70), bool)
+    mask[0, 5, 40], mask[1, 80, 3] = True, True
+    (x, y), (u, v) = parts.left_window(mask).px([[5, 40], [80, 3]])
+    assert 24 < y < v < parts.HEIGHT - 24 and 24 < u < x < parts.LEFT - 24
 
 
 def test_the_scale_runs_from_its_lower_to_its_upper_end():
