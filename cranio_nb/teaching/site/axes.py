@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ..widgets import Panel
-from ..widgets.controls import Control, Slider
+from ..widgets.controls import START, Control, Slider
 
 _PAIR = r"\b{}\s*=\s*(-?[\d.]+\d|\d+)"  # in the text of a lesson: plane=30
 
@@ -178,8 +178,9 @@ def presets_on(axes: Sequence[Axis], panel: Panel) -> dict[str, Mapping[str, Any
         Name of the preset -> values by name of the control, of the axes only.
     """
     moved = {axis.control.name for axis in axes}
+    start = {name: control.value for name, control in panel.controls.items()}
     found: dict[str, Mapping[str, Any]] = {}
-    for name, values in panel.presets.items():
+    for name, values in ({START: start} | panel.presets).items():
         if all(panel.values[other] == value for other, value in values.items() if other not in moved):
             found[name] = {other: value for other, value in values.items() if other in moved}
     return found

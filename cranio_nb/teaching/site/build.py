@@ -22,15 +22,17 @@ from ...errors import InputRefused
 from ...output.staging import staged
 from .lesson_page import LessonPage, lesson_page
 from .pages import lesson_head, write_pages
+from .panel_html import SCRIPTS, STYLES, write_front
 
-NEEDS = ("sphinx", "myst_nb", "numpydoc", "furo")
-"""Modules of the extra ``site``."""
+NEEDS = ("nbformat", "anywidget", "sphinx", "myst_nb", "numpydoc", "furo")
+"""Modules of the extras ``lab`` and ``site``."""
 NAMES = (
     *("index.html", "genindex.html", "py-modindex.html", "search.html", "searchindex.js"),
     *("CONTRIBUTING.html", "CHANGELOG.html"),
     *("lessons", "docs", "api", "pictures", "_static", "_images", "_downloads"),
 )
 """All that lies in the folder of a site."""
+_FRONT = "front"  # folder of the panels' scripts and styles among the pages
 _CONFIG: dict[str, Any] = {
     "project": "cranio-nb",
     "copyright": "the cranio-nb developers",
@@ -38,13 +40,12 @@ _CONFIG: dict[str, Any] = {
     "root_doc": "index",
     "language": "en",
     "extensions": ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "cranio_nb.teaching.site.extension"],
-    "exclude_patterns": ["notebooks"],
+    "exclude_patterns": ["notebooks", _FRONT],
     "default_role": "py:obj",
     "html_theme": "furo",
     "html_title": "cranio-nb",
-    "html_static_path": [str(Path(__file__).parent / "static")],
-    "html_css_files": ["site.css"],
-    "html_js_files": [("panel.js", {"defer": "defer"})],
+    "html_css_files": list(STYLES),
+    "html_js_files": [(name, {"defer": "defer"}) for name in SCRIPTS],
     "html_math_renderer": "mathml",
     "html_copy_source": False,
     "html_show_sphinx": False,
@@ -93,7 +94,7 @@ def build_site(
         Where the system refuses.
     """
     if lacking := [name for name in NEEDS if find_spec(name) is None]:
-        raise InputRefused("NoSite", f"Not installed: {', '.join(lacking)}.", 'Run: pip install "cranio-nb[site]".')
+        raise InputRefused("NoSite", f"Not installed: {', '.join(lacking)}.", 'Run: pip install "cranio-nb[lab,site]".')
     notebooks = sorted((project / "notebooks").glob(f"{only}*.ipynb"))
     if not notebooks:
         raise InputRefused("NoLessons", f"There are no notebooks in {project.name}/notebooks.", "Build them first.")
@@ -103,6 +104,8 @@ def build_site(
         write_pages(project, source, [path.stem for path in notebooks])
         shutil.copytree(project / "notebooks", source / "notebooks", ignore=shutil.ignore_patterns("src", "*.toml"))
         (source / "lessons").mkdir()
+        (source / _FRONT).mkdir()
+        write_front(source / _FRONT)
         for path in notebooks:
             page = _lesson(path, repository)
             nbformat.write(page.notebook, source / "lessons" / path.name)
@@ -130,13 +133,15 @@ def run_sphinx(source: Path, out: Path, trees: Path) -> None:
     from sphinx.application import Sphinx
 
     said = StringIO()
-    app = Sphinx(source, None, out, trees, "html", _CONFIG, status=None, warning=said, parallel=1)
+    static = {"html_static_path": [str(source / _FRONT)]}
+    app = Sphinx(source, None, out, trees, "html", _CONFIG | static, status=None, warning=said, parallel=1)
     app.build()
     if said.getvalue():
         raise InputRefused("BadPage", f"Sphinx warns: {said.getvalue()[:1000]}", "Mend the page.")
     # for machines that build upon each other's docs, and for the next build: nothing a reader needs
     for name in (".buildinfo", "objects.inv"):
         (out / name).unlink(missing_ok=True)
+    shutil.rmtree(out / "_sources", ignore_errors=True)
 
 
 def _lesson(path: Path, repository: str) -> LessonPage:

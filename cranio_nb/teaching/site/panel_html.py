@@ -1,18 +1,30 @@
-"""The frames of a panel -> its place on a page: controls, picture, caption, and what the script must know."""
+"""The frames of a panel -> its place on a page: the first picture, and all that the script must know.
+
+In the browser the panel's own front draws the controls, as in a notebook; ``static/ahead.js`` answers it in the
+kernel's stead.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 
-from ..widgets import Panel
-from ..widgets.controls import Choice, Switch
+from ..widgets import Panel, live
 from .axes import Axis, presets_on
 from .frames import Frames
+
+STATIC = Path(__file__).parent / "static"
+"""Folder of the script and the style of panels without a kernel."""
+SCRIPTS = ("panel.js", "ahead.js")
+"""What a page loads, in this order."""
+STYLES = ("panel.css", "site.css")
+"""Its style sheets."""
+_FRONT = Path(live.__file__).parent / "front"
+_EXPORT = "export default { render };"
 
 
 def panel_html(panel: Panel, frames: Frames, name: str, folder: str) -> str:
@@ -35,88 +47,71 @@ def panel_html(panel: Panel, frames: Frames, name: str, folder: str) -> str:
         HTML, without an empty line: Markdown would end it there.
     """
     height, width = panel.view.rgb.shape[:2]
-    axes = [_axis(axis) for axis in frames.axes]
     text = _template().render(
         id=name,
-        name=panel.alt,
-        axes=axes,
-        presets=list(_presets(panel, frames)),
-        frames=frames,
-        folder=folder,
         alt=panel.alt,
+        line=frames.lines[frames.start],
+        picture=f"{folder}/{frames.names[frames.start]}",
         width=width,
         height=height,
-        data=_data(panel, frames, axes, folder),
+        data=_data(panel, frames, folder),
     )
     return "\n".join(line for line in text.splitlines() if line.strip())
 
 
-def stop_text(axis: Axis, stop: Any) -> str:
-    """A stop in words, with its unit.
+def write_front(folder: Path) -> None:
+    """Write the scripts and styles of panels.
 
     Parameters
     ----------
-    axis : Axis
-    stop : float, str or bool
-
-    Returns
-    -------
-    str
-
-    Examples
-    --------
-    >>> from cranio_nb.teaching.widgets.controls import Slider
-    >>> axis = Axis(Slider("width", "width", 0, 100, 50, 0.5, unit="HU"), (0.0, 62.5), 0)
-    >>> stop_text(axis, 62.5)
-    '62.5 HU'
+    folder : path
+        Gets `SCRIPTS` and `STYLES`. The panel's own front is a module, which a page opened from disk may not load:
+        it becomes a plain script.
     """
-    if isinstance(stop, bool):
-        return "on" if stop else "off"
-    text = stop if isinstance(stop, str) else f"{stop:.6g}".replace("-", "\N{MINUS SIGN}")
-    return f"{text} {axis.control.unit}".strip()
+    text = (_FRONT / "panel.js").read_text("utf-8")
+    assert text.count(_EXPORT) == 1
+    body = text.replace(_EXPORT, "window.cranioPanel = render;")
+    (folder / "panel.js").write_text(f"(function () {{\n{body}}})();\n", "utf-8")
+    (folder / "panel.css").write_bytes((_FRONT / "panel.css").read_bytes())
+    for path in STATIC.iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
 
 
-def _axis(axis: Axis) -> dict[str, Any]:
-    """What the template and the script must know of an axis."""
-    control = axis.control
-    kind = "choice" if isinstance(control, Choice) else "switch" if isinstance(control, Switch) else "range"
-    return {
-        "kind": kind,
-        "label": control.label,
-        "texts": [stop_text(axis, stop) for stop in axis.stops],
-        "start": axis.start,
-        "player": bool(getattr(control, "player", False)),
-        "cyclic": axis.cyclic,
-    }
-
-
-def _presets(panel: Panel, frames: Frames) -> Any:
-    """Name of each preset that the axes reach, and the places it goes to; what it leaves open starts anew."""
-    for name, values in presets_on(frames.axes, panel).items():
-        yield name, [_place(axis, values) for axis in frames.axes]
-
-
-def _place(axis: Axis, values: Mapping[str, Any]) -> int:
-    if axis.control.name not in values:
-        return axis.start
-    return axis.stops.index(axis.control.taken(values[axis.control.name]))
-
-
-def _data(panel: Panel, frames: Frames, axes: list[dict[str, Any]], folder: str) -> str:
+def _data(panel: Panel, frames: Frames, folder: str) -> str:
     """All of it as JSON that may stand inside a script."""
     files = list(frames.files)
     place = {name: i for i, name in enumerate(files)}
     number = {axis.control.name: i for i, axis in enumerate(frames.axes)}
     found = {
-        "alt": panel.alt,
+        "panel": _declared(panel, frames),
         "folder": folder,
-        "axes": [{key: axis[key] for key in ("texts", "start", "cyclic")} for axis in axes],
         "files": files,
         "pictures": [place[name] for name in frames.names],
         "lines": frames.lines,
         "off": [[number[name] for name in off if name in number] for off in frames.off],
     }
     return json.dumps(found, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
+
+
+def _declared(panel: Panel, frames: Frames) -> dict[str, Any]:
+    """The panel as its front is told of it; only the axes can be moved."""
+    height, width = panel.view.rgb.shape[:2]
+    return {
+        "controls": [_control(axis) for axis in frames.axes],
+        "values": {axis.control.name: axis.stops[axis.start] for axis in frames.axes},
+        "presets": presets_on(frames.axes, panel),
+        "actions": [],
+        "limits": {},
+        "alt": panel.alt,
+        "slow": False,  # each picture is there already
+        "width": width,
+        "height": height,
+    }
+
+
+def _control(axis: Axis) -> dict[str, Any]:
+    told = live.declared(axis.control, slow=False)
+    return told | {"stops": list(axis.stops), "cyclic": axis.cyclic}
 
 
 @lru_cache(maxsize=1)

@@ -20,9 +20,8 @@ from ...errors import InputRefused
 from ...output.staging import staged
 from ..lesson_text import tags
 from .lesson_page import COLAB, lesson_page
+from .panel_html import write_front
 
-STATIC = Path(__file__).parent / "static"
-"""Folder of the script and the styles of panels."""
 _MOST_LETTERS = 620  # of text on one slide
 _FORMULA = re.compile(r"\$\$(.+?)\$\$|(?<![\\$])\$([^$\n]+)\$", re.S)
 _LEFT_OUT = {"solution", "check", "expected"}
@@ -51,7 +50,7 @@ def write_slides(notebook: Path, out: Path) -> Path:
         Where the system refuses.
     """
     if find_spec("sphinx_revealjs") is None:
-        raise InputRefused("NoSlides", "Not installed: sphinx-revealjs.", 'Run: pip install "cranio-nb[site]".')
+        raise InputRefused("NoSlides", "Not installed: sphinx-revealjs.", 'Run: pip install "cranio-nb[lab,site]".')
     if not notebook.is_file():
         raise InputRefused("NotFound", f"There is no notebook {notebook.name}.")
     folder = f"{notebook.stem}_pictures"
@@ -189,5 +188,4 @@ def _copy_reveal(folder: Path) -> None:
         shutil.copy(reveal / name, folder / name)
     font = "dist/theme/fonts/source-sans-pro"
     shutil.copytree(reveal / font, folder / font)
-    for path in STATIC.iterdir():
-        shutil.copy(path, folder)
+    write_front(folder)

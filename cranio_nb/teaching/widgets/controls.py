@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from ...errors import InputRefused
 
+START = "as at the start"
+"""Name of the preset that every panel has."""
 _DECADE = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 """Preferred numbers, series R10 of ISO 3: even steps of the logarithm, in round numbers."""
 

@@ -174,12 +174,14 @@ function render({ model, el }) {
 
   let url = null;
   const drawn = () => {
+    const sent = model.get("picture");
     URL.revokeObjectURL(url);
-    url = URL.createObjectURL(new Blob([model.get("picture")], { type: "image/jpeg" }));
-    picture.src = url;
+    url = typeof sent === "string" ? null : URL.createObjectURL(new Blob([sent], { type: "image/jpeg" }));
+    picture.src = url ?? sent; // a page without a kernel sends the picture's address
   };
   const said = () => {
     caption.textContent = model.get("caption");
+    picture.alt = `${model.get("alt")} ${model.get("caption")}`;
   };
   const shown = () => {
     const [values, limits, off] = ["values", "limits", "off"].map((name) => model.get(name));
