@@ -21,6 +21,16 @@ def draw(grey, side, wide):
     bar = slice(0, 45 if wide else 15) if side == "left" else slice(45 if wide else 75, 90)
     rgb[:, bar] = (0, 114, 178)
     return View(rgb, f"grey {grey}, a {'wide' if wide else 'narrow'} bar at the {side} of it <1>")"""
+MOVE = """## Move
+
+Try `panel.set(grey=70)`.
+
+<details>
+<summary>Answer</summary>
+
+It brightens.
+
+</details>"""
 PANEL = """controls = (
     Slider("grey", "grey of it", 0, 250, 50, 10, unit="levels", player=True),
     Choice("side", "side", ("left", "right"), "left"),
@@ -43,7 +53,7 @@ def lesson():
         new_code_cell("# On Colab this installs the package; elsewhere it does nothing."),
         new_code_cell(DRAW),
         new_code_cell("1 / 0", metadata={"tags": ["raises-exception"]}),
-        new_markdown_cell("## Move\n\nTry `panel.set(grey=70)`.\n\n<details>\n<summary>Answer</summary>\n\nIt darkens."),
+        new_markdown_cell(MOVE),
         new_code_cell(PANEL),
         new_code_cell(SCENE),
         new_code_cell(FIGURE),
@@ -60,7 +70,9 @@ def lesson():
 
 def outputs_of(source, names):
     """What a kernel would store of a cell's last expression."""
-    *body, end = ast.parse(source).body or [ast.Pass()]
+    if not (statements := ast.parse(source).body):
+        return []
+    *body, end = statements
     exec(compile(ast.Module(body, []), "cell", "exec"), names)
     if not isinstance(end, ast.Expr):
         exec(compile(ast.Module([end], []), "cell", "exec"), names)

@@ -2,22 +2,25 @@
 
 A panel has far more settings than a site can hold. Its main controls are kept, and of a slider some stops: even steps
 from end to end, close ones at the start of a film, and every value that the lesson's text names. Folded controls stay
-as they are where the panel is shown.
+as they are where the panel is shown; where a preset moves some, one more control chooses among these presets.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import prod
 from typing import Any
 
 import numpy as np
 
 from ..widgets import Panel
-from ..widgets.controls import START, Control, Slider
+from ..widgets.controls import START, Choice, Control, Slider
 
+SETTING = "setting"
+"""Name of the control that chooses among presets of folded controls."""
+_AS_SHOWN = "as shown"
 _PAIR = r"\b{}\s*=\s*(-?[\d.]+\d|\d+)"  # in the text of a lesson: plane=30
 
 
@@ -34,12 +37,31 @@ class Axis:
         Place of the value that is shown first.
     cyclic : bool
         Whether the first stop comes after the last one.
+    presets : mapping
+        Of the control `SETTING`: preset -> values of folded controls.
     """
 
     control: Control
     stops: tuple[Any, ...]
     start: int
     cyclic: bool = False
+    presets: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+
+    def values(self, stop: Any) -> dict[str, Any]:
+        """Values of the panel's controls at a stop.
+
+        Parameters
+        ----------
+        stop : float, str or bool
+
+        Returns
+        -------
+        dict
+            By name of the control.
+        """
+        if self.control.name == SETTING:
+            return dict(self.presets.get(stop, {}))
+        return {self.control.name: stop}
 
 
 def axes_of(panel: Panel, text: str, n_frames: int) -> tuple[Axis, ...]:
@@ -62,11 +84,24 @@ def axes_of(panel: Panel, text: str, n_frames: int) -> tuple[Axis, ...]:
     main = [control for control in panel.controls.values() if not control.expert]
     wanted = {control.name: wanted_values(panel, control, text) for control in main}
     most = [_most_stops(control, wanted[control.name]) for control in main]
-    axes = []
+    settings = _settings(panel)
+    axes = list(settings)
+    n_frames //= prod(len(axis.stops) for axis in settings)
     for control, n in zip(main, share_frames(most, n_frames), strict=True):
         stops = thinned(control, n, wanted[control.name]) if isinstance(control, Slider) else control.stops
         axes.append(Axis(control, stops, stops.index(panel.values[control.name])))
     return tuple(axes)
+
+
+def _settings(panel: Panel) -> tuple[Axis, ...]:
+    """The axis of the presets that move folded controls, if there are any and pictures are quick."""
+    folded = {name for name, control in panel.controls.items() if control.expert}
+    found = {name: {other: values[other] for other in folded & values.keys()} for name, values in panel.presets.items()}
+    found = {name: moved for name, moved in found.items() if moved}
+    if panel.slow or not found:
+        return ()
+    stops = (_AS_SHOWN, *found)
+    return (Axis(Choice(SETTING, "more settings", stops, _AS_SHOWN), stops, 0, presets=found),)
 
 
 def _most_stops(control: Control, wanted: set[Any]) -> int:
@@ -158,6 +193,8 @@ def thinned(slider: Slider, n: int, wanted: set[float]) -> tuple[float, ...]:
     """
     last = len(slider.stops) - 1
     n = n if slider.ahead is None else slider.ahead
+    if n > last:
+        return slider.stops
     places = np.expm1(np.linspace(0, np.log1p(last), n)) if slider.player else np.linspace(0, last, n)
     kept = {slider.stops[int(place)] for place in np.rint(places)} | wanted
     return tuple(stop for stop in slider.stops if stop in kept)
@@ -175,12 +212,16 @@ def presets_on(axes: Sequence[Axis], panel: Panel) -> dict[str, Mapping[str, Any
     Returns
     -------
     dict of str to mapping
-        Name of the preset -> values by name of the control, of the axes only.
+        Name of the preset -> values by name of the axes' controls.
     """
     moved = {axis.control.name for axis in axes}
+    settings: set[str] = set().union(*(axis.presets for axis in axes))
     start = {name: control.value for name, control in panel.controls.items()}
     found: dict[str, Mapping[str, Any]] = {}
     for name, values in ({START: start} | panel.presets).items():
-        if all(panel.values[other] == value for other, value in values.items() if other not in moved):
-            found[name] = {other: value for other, value in values.items() if other in moved}
+        kept = {other: value for other, value in values.items() if other in moved}
+        if name in settings:
+            found[name] = kept | {SETTING: name}
+        elif all(panel.values[other] == value for other, value in values.items() if other not in moved):
+            found[name] = kept | ({SETTING: _AS_SHOWN} if settings and name == START else {})
     return found

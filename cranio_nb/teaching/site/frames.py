@@ -6,6 +6,7 @@ import hashlib
 import io
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from typing import Any
 
@@ -16,8 +17,12 @@ from PIL import Image
 from ..widgets import Panel, View
 from .axes import Axis
 
-_LOSSY = {"quality": 88, "method": 4}
-_LOSSLESS = {"lossless": True, "quality": 50, "method": 4}  # smaller than the other where a picture is drawn
+_LOSSY: dict[str, Any] = {"quality": 88, "method": 4}
+_LOSSLESS: dict[str, Any] = {
+    "lossless": True,
+    "quality": 50,
+    "method": 4,
+}  # smaller than the other where a picture is drawn
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +73,7 @@ def draw_frames(panel: Panel, axes: Sequence[Axis]) -> Frames:
     -------
     Frames
     """
-    encode = _smaller_encoding(panel.view.rgb)
+    encode = encoding(panel)
     names, lines, off, files = [], [], [], {}
     for view in _views(panel, axes):
         data = encode(view.rgb)
@@ -89,7 +94,9 @@ def _views(panel: Panel, axes: Sequence[Axis]) -> Iterator[View]:
         return (off, *(value for name, value in values.items() if name not in off))
 
     for stops in product(*(axis.stops for axis in axes)):
-        values = panel.values | {axis.control.name: stop for axis, stop in zip(axes, stops, strict=True)}
+        values = dict(panel.values)
+        for axis, stop in zip(axes, stops, strict=True):
+            values |= axis.values(stop)
         # what was drawn for another value of a control without effect is not drawn again
         known = (drawn[key(values, off)] for off in patterns if key(values, off) in drawn)
         view = next(known, None) or panel.picture(**values)
@@ -98,11 +105,22 @@ def _views(panel: Panel, axes: Sequence[Axis]) -> Iterator[View]:
         yield view
 
 
-def _smaller_encoding(rgb: NDArray[np.uint8]) -> Callable[[NDArray[np.uint8]], bytes]:
-    """The way to store pictures like this one in fewer bytes."""
-    lossy, lossless = encoded_webp(rgb, **_LOSSY), encoded_webp(rgb, **_LOSSLESS)
-    options = _LOSSY if len(lossy) < len(lossless) else _LOSSLESS
-    return lambda picture: encoded_webp(picture, **options)
+def encoding(panel: Panel) -> Callable[[NDArray[np.uint8]], bytes]:
+    """The way to store the pictures of a panel in fewer bytes: with small losses, or drawn ones without any.
+
+    Parameters
+    ----------
+    panel : Panel
+        Its picture of now is tried.
+
+    Returns
+    -------
+    callable
+        Pixels, shape (H, W, 3) -> WebP.
+    """
+    rgb = panel.view.rgb
+    smaller = min((_LOSSY, _LOSSLESS), key=lambda options: len(encoded_webp(rgb, **options)))
+    return partial(encoded_webp, **smaller)
 
 
 def encoded_webp(rgb: NDArray[np.uint8], **options: Any) -> bytes:

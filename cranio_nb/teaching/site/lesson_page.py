@@ -15,12 +15,12 @@ from nbformat import NotebookNode
 from ...drawing.scene3d import Scene
 from ..lesson_text import tags
 from .axes import axes_of
-from .frames import draw_frames
+from .frames import draw_frames, encoding
 from .needed_cells import Shown, shown_by
 from .panel_html import panel_html
 from .turntable import all_round, turntable
 
-_FRAMES, _SLOW_FRAMES = 220, 24  # pictures of a panel
+_ROOM, _SLOW_FRAMES = 4_500_000, 24  # bytes for a panel's pictures; how many where each takes long
 COLAB = "# On Colab this installs the package"
 """How the cell begins that prepares Colab."""
 
@@ -102,7 +102,7 @@ def _panel(page: LessonPage, shown: Shown, text: str, name: str, folder: str) ->
         axes = all_round(panel)
     else:
         panel = shown
-        axes = axes_of(panel, text, _SLOW_FRAMES if panel.slow else _FRAMES)
+        axes = axes_of(panel, text, _SLOW_FRAMES if panel.slow else _ROOM // len(encoding(panel)(panel.view.rgb)))
     frames = draw_frames(panel, axes)
     page.files.update(frames.files)
     return panel_html(panel, frames, f"panel-{name}", folder)

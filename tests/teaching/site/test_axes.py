@@ -48,7 +48,11 @@ def test_values_that_are_shown_named_or_set_by_a_preset_are_drawn():
 
 
 def test_folded_controls_stay_as_they_are_shown():
-    controls = (Slider("n", "n", 7, 61, 21, 2, expert=True), Switch("fine", "fine", True), Choice("k", "k", ("a",), "a"))
+    controls = (
+        Slider("n", "n", 7, 61, 21, 2, expert=True),
+        Switch("fine", "fine", True),
+        Choice("k", "k", ("a",), "a"),
+    )
     assert [axis.control.name for axis in axes_of(panel(*controls), "", 100)] == ["fine", "k"]
 
 
@@ -58,7 +62,22 @@ def test_a_control_may_say_how_many_are_drawn_ahead():
     assert axes[0].stops == (0, 30, 50, 100) and len(axes[1].stops) == 25
 
 
-def test_presets_that_move_folded_controls_are_left_out():
+def test_where_pictures_are_slow_presets_of_folded_controls_are_left_out():
     controls = (Slider("k", "k", 0, 9, 1), Slider("n", "n", 0, 9, 3, expert=True))
-    shown = panel(*controls, presets={"here": {"k": 5, "n": 3}, "away": {"k": 5, "n": 4}})
-    assert presets_on(axes_of(shown, "", 10), shown) == {"here": {"k": 5}}
+    shown = panel(*controls, presets={"here": {"k": 5, "n": 3}, "away": {"k": 5, "n": 4}}, slow=True)
+    axes = axes_of(shown, "", 10)
+    assert [axis.control.name for axis in axes] == ["k"]
+    assert presets_on(axes, shown) == {"as at the start": {"k": 1}, "here": {"k": 5}}
+
+
+def test_where_presets_move_folded_controls_one_more_control_chooses_among_them():
+    controls = (Slider("k", "k", 0, 9, 1), Slider("n", "n", 0, 9, 3, expert=True))
+    shown = panel(*controls, presets={"here": {"k": 5}, "away": {"k": 6, "n": 4}})
+    setting, k = axes_of(shown, "", 20)
+    assert setting.stops == ("as shown", "away") and k.stops == tuple(range(10))
+    assert [setting.values(stop) for stop in setting.stops] == [{}, {"n": 4}] and k.values(7) == {"k": 7}
+    assert presets_on((setting, k), shown) == {
+        "as at the start": {"k": 1, "setting": "as shown"},
+        "here": {"k": 5},
+        "away": {"k": 6, "setting": "away"},
+    }

@@ -20,8 +20,8 @@ def decoded(data):
 
 def settings(frames):
     """Values of each setting, in the order of the frames."""
-    names = [axis.control.name for axis in frames.axes]
-    return [dict(zip(names, stops, strict=True)) for stops in product(*(axis.stops for axis in frames.axes))]
+    for stops in product(*(axis.stops for axis in frames.axes)):
+        yield {name: v for axis, stop in zip(frames.axes, stops, strict=True) for name, v in axis.values(stop).items()}
 
 
 @pytest.mark.parametrize("kind", ["drawn", "grey levels"])
@@ -33,17 +33,18 @@ def test_each_stored_picture_is_the_live_one(kind, arch, ct):
         panel = widgets.ct_viewer(ct)
         plane, width = panel.controls["plane"], panel.controls["width"]
         frames = draw_frames(panel, (Axis(plane, (0, panel.values["plane"]), 1), Axis(width, (400, 1500), 1)))
+    as_shown = dict(panel.values)
     for values, name, line in zip(settings(frames), frames.names, frames.lines, strict=True):
-        live = panel.set(**values).view
+        live = panel.set(**as_shown | values).view
         assert line == live.line and close(decoded(frames.files[name]), live.rgb), values
 
 
 def test_the_first_one_is_what_the_lesson_shows(small_shown):
     panel = small_shown[0]
-    axes = axes_of(panel, "", 100)
+    axes = axes_of(panel, "", 200)
     frames = draw_frames(panel, axes)
     assert frames.lines[frames.start] == panel.view.line
-    assert settings(frames)[frames.start] == panel.values
+    assert list(settings(frames))[frames.start] == panel.values
     assert len(frames.names) == 26 * 2 * 2 and set(frames.names) == set(frames.files)
 
 
@@ -52,7 +53,8 @@ def test_a_control_without_effect_is_not_drawn_again():
 
     def draw(own, k):
         drawn.append((own, k))
-        return View(np.full((4, 4, 3), 10 * k if own else 7, np.uint8), f"{own} {k if own else 'auto'}", off=() if own else ("k",))
+        rgb = np.full((4, 4, 3), 10 * k if own else 7, np.uint8)
+        return View(rgb, f"k is {k if own else 'found'}", off=() if own else ("k",))
 
     controls = (Switch("own", "own", True), Slider("k", "k", 0, 5, 2))
     panel = widgets.Panel(controls, draw, alt="Grey.")

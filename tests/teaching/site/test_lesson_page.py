@@ -25,10 +25,10 @@ def test_a_stored_picture_is_the_file_that_the_page_names(small, small_page):
 def test_a_panel_and_a_scene_have_controls_and_all_their_pictures(small_page):
     panel, scene, _ = html_of(small_page)
     for page in (panel, scene):
-        assert page.startswith('<figure class="cranio-panel"')
+        assert page.startswith('<div class="cranio-ahead"')
         names = set(part.split('"')[0] for part in page.split('"') if part.endswith(".webp"))
         assert names and {name.rpartition("/")[2] for name in names} <= set(small_page.files)
-    assert scene.count('type="range"') == 2
+    assert '"turn"' in scene and '"rise"' in scene
 
 
 def test_nothing_of_the_lesson_itself_is_changed(small, small_page):
@@ -50,8 +50,8 @@ def test_the_colab_cell_of_the_shipped_lessons_is_known():
 
 @pytest.mark.parametrize("name", ["04_deformable_model"])
 def test_a_shipped_lesson_is_small_before_its_panels_are_touched(name, monkeypatch):
-    monkeypatch.setattr(module, "_FRAMES", 12)
+    monkeypatch.setattr(module, "_ROOM", 100_000)
     page = lesson_page(nbformat.read(FOLDER / f"{name}.ipynb", as_version=4), "pictures")
-    assert sum("cranio-panel" in text for text in html_of(page)) == 1
+    assert sum("cranio-ahead" in text for text in html_of(page)) == 1
     stored = sum(len(data) for file, data in page.files.items() if file.endswith(".png"))
     assert stored + len(nbformat.writes(page.notebook)) < 2_000_000
