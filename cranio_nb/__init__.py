@@ -17,7 +17,8 @@ For teaching and research. Not a medical device, not for clinical use.
 Names are loaded when they are first used. The folders, each of which imports only what stands above it here:
 
 ===============  =====================================================================================================
-the files here   the nouns: `errors`, `volume`, `mesh`, `curves`, `opening`, `prosthesis`
+the files here   the nouns: `errors`, `grid`, `volume`, `mesh`, `curves`, `opening`, `prosthesis`
+`options`        what may be given for an option: meaning, range, unit
 `geometry`       work on triangle meshes; robust fits
 `readers`        scan on disk -> CT in HU
 `stages`         the paper's five: `segmentation`, `feature_extraction`, `deformable_model`, `prosthesis_volume`,

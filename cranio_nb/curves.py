@@ -87,17 +87,17 @@ class ChordFrame:
         return (np.asarray(points, float) - self.origin) @ self.axes.T
 
     def to_slice(self, points: ArrayLike) -> Points:
-        """Points of the slice by their chord coordinates.
+        """Points of the slice by their chord coordinates: the inverse of `to_chord`.
 
         Parameters
         ----------
         points : array_like, shape (..., 2)
-            Chord (along, out), px.
+            As `to_chord` returns them.
 
         Returns
         -------
         ndarray, shape (..., 2)
-            Slice (row, col), px.
+            As `to_chord` takes them.
         """
         return np.asarray(points, float) @ self.axes + self.origin
 

@@ -124,8 +124,8 @@ class HeadShape:
 
         Parameters
         ----------
-        offsets : array_like, shape (..., 3)
-            Points minus the centre, mm.
+        offsets
+            As for `norm`.
 
         Returns
         -------
@@ -233,10 +233,8 @@ def polynomial_gradient(coefficients: Array, terms: tuple[tuple[int, int, int], 
 
     Parameters
     ----------
-    coefficients : ndarray, shape (n,)
-    terms : tuple of tuple of int
-        n powers (i, j, k) of x^i y^j z^k.
-    x : ndarray, shape (..., 3)
+    coefficients, terms, x
+        As for `polynomial`.
 
     Returns
     -------

@@ -11,6 +11,7 @@ from cranio_nb.drawing import figures
 from cranio_nb.drawing.coarse_skull import skull_surface
 from cranio_nb.mesh import Mesh
 from cranio_nb.methods.slicewise.slices import SlicedDesign
+from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import RunResult, run_design
 from data_synth import head_case
 from data_synth.files import write_case
@@ -25,7 +26,7 @@ def main() -> None:
     """Design what `cranio-nb demo` designs, and draw skull, prosthesis and one slice side by side."""
     with TemporaryDirectory() as folder:
         write_case(Path(folder), head_case("face", "full", "unilateral", 0))
-        result = run_design(Path(folder) / "ct")
+        result = run_design(prepare(Path(folder) / "ct"))
     OUT.parent.mkdir(exist_ok=True)
     OUT.write_bytes(figures.png(side_by_side([*views(result), middle_slice(result)])))
 

@@ -1,12 +1,12 @@
 """The helpers of the benchmarks: nothing is designed twice, and means are what they say."""
 
 import argparse
-import importlib
 import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmark_scripts import script
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.pipeline.compare import MEASURES
@@ -14,19 +14,8 @@ from cranio_nb.pipeline.trial import Contender, Trial, attempt
 from cranio_nb.volume import Volume
 from data_synth import DEFECTS, phantom_case
 
-FOLDER = Path(__file__).parent.parent / "benchmarks"
-
-
-@pytest.fixture(scope="module")
-def cohort():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(FOLDER))
-        yield importlib.import_module("cohort")
-
-
-@pytest.fixture(scope="module")
-def defects(cohort):
-    return importlib.import_module("defects")
+cohort = script("cohort")
+defects = script("defects")
 
 
 def load(defect):

@@ -1,26 +1,12 @@
 """The benchmarks of damaged and oversized inputs: mutants are repeatable and judged rightly, bombs are measured."""
 
-import importlib
-from pathlib import Path
-
 import numpy as np
-import pytest
+from benchmark_scripts import script
 
 from cranio_nb.errors import InputRefused
 
-FOLDER = Path(__file__).parent.parent / "benchmarks"
-
-
-@pytest.fixture(scope="module")
-def mutants():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(FOLDER))
-        yield importlib.import_module("mutants")
-
-
-@pytest.fixture(scope="module")
-def bombs(mutants):
-    return importlib.import_module("bombs")
+mutants = script("mutants")
+bombs = script("bombs")
 
 
 def test_the_same_number_is_the_same_mutant(mutants):

@@ -1,24 +1,16 @@
 """The golden comparison notices one bit, and takes nothing identical for different."""
 
-import importlib
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmark_scripts import FOLDER, script
 
 from cranio_nb.errors import InputRefused
 
-FOLDER = Path(__file__).parent.parent / "benchmarks"
-
-
-@pytest.fixture(scope="module")
-def golden():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(FOLDER))
-        yield importlib.import_module("golden")
+golden = script("golden")
 
 
 def found(**changed):

@@ -1,11 +1,6 @@
 """Mutants of prose are told from those that change what a function does."""
 
-import importlib
-from pathlib import Path
-
-import pytest
-
-FOLDER = Path(__file__).parent.parent / "benchmarks"
+from benchmark_scripts import FOLDER, script
 
 MUTATED = """
 def x_f__mutmut_orig(a):
@@ -23,10 +18,7 @@ def x_f__mutmut_5(a):
 """
 
 
-@pytest.fixture
-def mutation(monkeypatch):
-    monkeypatch.syspath_prepend(str(FOLDER))
-    return importlib.import_module("mutation")
+mutation = script("mutation")
 
 
 def test_a_mutant_of_prose_changes_a_string_with_a_space_between_words_and_nothing_else(mutation):

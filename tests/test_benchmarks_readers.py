@@ -1,22 +1,13 @@
 """The benchmark of the readers calls exact what is exact, and hears what a reader says."""
 
-import importlib
 import os
-from pathlib import Path
 
 import numpy as np
-import pytest
+from benchmark_scripts import script
 
 from data_synth.faults import fault_cases
 
-FOLDER = Path(__file__).parent.parent / "benchmarks"
-
-
-@pytest.fixture(scope="module")
-def readers():
-    with pytest.MonkeyPatch.context() as patch:
-        patch.syspath_prepend(str(FOLDER))
-        yield importlib.import_module("readers")
+readers = script("readers")
 
 
 def test_the_truth_is_exact_in_any_order_of_its_axes(readers, tmp_path):

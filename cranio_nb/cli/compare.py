@@ -3,25 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from ..errors import InputRefused, NoOpening
 from ..methods.catalogue import METHODS
-from .options import (
-    PATH,
-    allow,
-    check_reads,
-    check_writes,
-    debug,
-    label,
-    mask,
-    opening,
-    opening_checked,
-    threshold,
-    truth,
-)
+from .options import PATH, check_reads, check_writes, debug, opening, opening_checked, reading, truth
 
 if TYPE_CHECKING:
     from ..pipeline.compare import Comparison, Measure
@@ -40,10 +28,7 @@ if TYPE_CHECKING:
     help=f"One of {', '.join(METHODS)}, also NAME:paper; may be repeated; see `cranio-nb methods`.  [default: all]",
 )
 @opening
-@mask
-@label
-@threshold
-@allow
+@reading
 @debug
 def compare(
     scan: Path,
@@ -51,10 +36,7 @@ def compare(
     out: Path | None,
     methods: tuple[str, ...],
     opening: tuple[int, ...],
-    mask: bool,
-    label: int | None,
-    threshold: float | None,
-    allow: tuple[str, ...],
+    **how_read: Any,
 ) -> None:
     """Let several methods close the same hole, and set them side by side.
 
@@ -77,16 +59,7 @@ def compare(
     if out is not None:
         check_writes(out, FILES, {"scan": scan, "truth": truth})
     with progress_bar() as progress, opening_checked():
-        case = prepare(
-            scan,
-            mask=mask or None,
-            label=label,
-            threshold=threshold,
-            opening=opening,
-            truth=truth,
-            allow=allow,
-            progress=progress,
-        )
+        case = prepare(scan, opening=opening, truth=truth, progress=progress, **how_read)
         found = run_all(case, asked, progress=lambda name, done: progress(name, 0.4 + 0.5 * done))
         if out is not None:
             progress("report", 0.92)

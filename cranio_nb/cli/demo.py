@@ -31,6 +31,7 @@ def demo(out: Path, size: str, head: str) -> None:
     from ..output import comparison_folder
     from ..output.design_folder import FILES, write_outputs
     from ..output.staging import staged
+    from ..pipeline.preparation import prepare
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
@@ -39,6 +40,7 @@ def demo(out: Path, size: str, head: str) -> None:
     with progress_bar() as progress, staged(out, names) as part:
         progress("synthetic CT", 0.0)
         write_case(part, head_case(head, size, "unilateral", 0))
-        result = run_design(part / "ct", truth=part / "truth.nii.gz", progress=progress)
+        case = prepare(part / "ct", truth=part / "truth.nii.gz", progress=progress)
+        result = run_design(case, progress=progress)
         write_outputs(result, part, progress)
     print_result(result, out)

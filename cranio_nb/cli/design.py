@@ -3,24 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import click
 
 from .method_name import MethodName, check_asked
-from .options import (
-    PATH,
-    allow,
-    check_writes,
-    debug,
-    label,
-    mask,
-    opening,
-    opening_checked,
-    parse_planes,
-    read_params,
-    threshold,
-    truth,
-)
+from .options import PATH, check_writes, debug, opening, opening_checked, parse_planes, read_params, reading, truth
 
 
 @click.command()
@@ -38,10 +26,7 @@ from .options import (
 @opening
 @click.option("--planes", metavar="A:B", help="Close only what lies in planes A to B (see `cranio-nb inspect`).")
 @truth
-@mask
-@label
-@threshold
-@allow
+@reading
 @debug
 def design(
     scan: Path,
@@ -53,10 +38,7 @@ def design(
     opening: tuple[int, ...],
     planes: str | None,
     truth: Path | None,
-    mask: bool,
-    label: int | None,
-    threshold: float | None,
-    allow: tuple[str, ...],
+    **how_read: Any,
 ) -> None:
     """Design the prosthesis that closes the hole in a skull.
 
@@ -73,6 +55,7 @@ def design(
     """
     from ..output.design_folder import FILES, write_outputs
     from ..output.staging import staged
+    from ..pipeline.preparation import prepare
     from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
@@ -84,20 +67,8 @@ def design(
     reads = {"scan": scan, "truth": truth, "params": params, "prior": Path(learned) if learned else None}
     check_writes(out, FILES, reads)
     with progress_bar() as progress, opening_checked():
-        result = run_design(
-            scan,
-            method=method,
-            preset=preset,
-            options=options,
-            mask=mask or None,
-            label=label,
-            threshold=threshold,
-            opening=opening,
-            planes=between,
-            truth=truth,
-            allow=allow,
-            progress=progress,
-        )
+        case = prepare(scan, opening=opening, planes=between, truth=truth, progress=progress, **how_read)
+        result = run_design(case, method=method, preset=preset, progress=progress, **options)
         with staged(out, FILES) as part:
             write_outputs(result, part, progress)
     print_result(result, out)

@@ -10,7 +10,7 @@ import click
 
 from ..errors import CranioError
 from ..readers import read_ct
-from .options import PATH, allow, as_json, check_reads, debug, label, mask, threshold
+from .options import PATH, as_json, check_reads, debug, reading
 
 if TYPE_CHECKING:
     from ..vault.opening_choice import JudgedOpening
@@ -18,14 +18,11 @@ if TYPE_CHECKING:
 
 @click.command()
 @click.argument("scan", type=PATH, metavar="INPUT")
-@mask
-@label
-@threshold
-@allow
+@reading
 @as_json
 @debug
 def inspect(
-    scan: Path, mask: bool, label: int | None, threshold: float | None, allow: tuple[str, ...], as_json: bool
+    scan: Path, mask: bool | None, label: int | None, threshold: float | None, allow: tuple[str, ...], as_json: bool
 ) -> None:
     """Show how a scan is read and which openings its skull has.
 
@@ -46,7 +43,7 @@ def inspect(
     check_reads(scan=scan)
     with progress_bar() as progress:
         volume, load = read_ct(
-            scan, mask=mask or None, label=label, allow=allow, progress=lambda i, n: progress("reading", i / n)
+            scan, mask=mask, label=label, allow=allow, progress=lambda i, n: progress("reading", i / n)
         )
     # what was read is printed also where the skull is refused; the refusal ends the command
     problem: CranioError | None = None

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from ..option import Option
+from ..options import Option
 from .options import PATH, debug, number
 
 PORT = Option("Port to listen on.", 1024, 65535, whole=True)

@@ -16,7 +16,7 @@ import click
 
 from ..errors import CannotWrite, InputRefused
 from ..methods.catalogue import check_options
-from ..option import THRESHOLD, Option
+from ..options import THRESHOLD, Option
 from ..readers import ALLOWANCES
 
 
@@ -110,7 +110,10 @@ allow = click.option(
     "--allow", multiple=True, type=click.Choice(ALLOWANCES), help="Relax one check of the reader; may be repeated."
 )
 mask = click.option(
-    "--mask", is_flag=True, help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it."
+    "--mask",
+    is_flag=True,
+    callback=lambda ctx, param, given: given or None,  # not given: the data say whether they are a mask
+    help="Take every nonzero voxel as bone. Data of 0 and 1 are a mask without it.",
 )
 label = number("--label", LABEL)
 threshold = number("--threshold", THRESHOLD)
@@ -128,6 +131,23 @@ head = click.option(
     "--head", type=click.Choice(HEADS), default="face", show_default=True, help="simple: a dome without a face."
 )
 as_json = click.option("--json", "as_json", is_flag=True, help="Print JSON instead of a table.")
+
+
+def reading(command: Callable[..., Any]) -> Callable[..., Any]:
+    """Give a command the options that say how a scan is read: --mask, --label, --threshold and --allow.
+
+    Parameters
+    ----------
+    command : callable
+        It gets their values as `prepare` takes them.
+
+    Returns
+    -------
+    callable
+    """
+    for option in (allow, threshold, label, mask):  # the last one stands first in the help
+        command = option(command)
+    return command
 
 
 def read_params(method: str, path: Path | None) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from ..errors import InputRefused
-from ..option import Option
+from ..options import Option
 from ..readers import read_ct
 from .options import CASE, PATH, SIZES, allow, check_writes, debug, head, number
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from ..readers import read_ct
-from .options import PATH, allow, as_json, check_reads, debug, label, mask, threshold
+from .options import PATH, as_json, check_reads, debug, reading
 
 _UNITS = {"hd95": "mm", "assd": "mm", "rmse": "mm", "overlap": "voxels"}
 
@@ -17,17 +17,14 @@ _UNITS = {"hd95": "mm", "assd": "mm", "rmse": "mm", "overlap": "voxels"}
 @click.argument("patch", type=PATH)
 @click.argument("truth", type=PATH)
 @click.option("--skull", type=PATH, required=True, help="Skull with the hole: bone mask, or a CT.")
-@mask
-@label
-@threshold
-@allow
+@reading
 @as_json
 @debug
 def score(
     patch: Path,
     truth: Path,
     skull: Path,
-    mask: bool,
+    mask: bool | None,
     label: int | None,
     threshold: float | None,
     allow: tuple[str, ...],
@@ -49,7 +46,7 @@ def score(
 
     check_reads(patch=patch, TRUTH=truth, skull=skull)
     (made, _), (true, _) = read_ct(patch, mask=True), read_ct(truth, mask=True)
-    scan, _ = read_ct(skull, mask=mask or None, label=label, allow=allow)
+    scan, _ = read_ct(skull, mask=mask, label=label, allow=allow)
     # the same bone that a design of this scan starts from
     found = dataclasses.asdict(scores.score(made, true, bone_of(scan, threshold)))
     if as_json:

@@ -96,7 +96,7 @@ def measure_against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCh
     made, true : Prosthesis
         With patches on one grid.
     bone : Volume
-        The skull with the hole.
+        As for `check_truth`.
 
     Returns
     -------
@@ -105,7 +105,7 @@ def measure_against(made: Prosthesis, true: Prosthesis, bone: Volume) -> TruthCh
     Raises
     ------
     InputRefused
-        ``NoPatch`` for a design without voxels; ``GridMismatch``.
+        As `check_truth`.
     """
     if made.patch is None or true.patch is None:
         raise InputRefused("NoPatch", f"The method {made.method} makes no voxels to compare with a mask.")

@@ -184,22 +184,6 @@ def overlap(patch: Volume, skull: Volume) -> int:
     return int(np.count_nonzero(patch.voxels[box] & skull.voxels[box]))
 
 
-def hd95(patch: Volume, truth: Volume) -> float:
-    """95th percentile of the `surface_distances`: the Hausdorff distance without its outliers.
-
-    Parameters
-    ----------
-    patch, truth : Volume
-        As for `dice`.
-
-    Returns
-    -------
-    float
-        mm.
-    """
-    return _percentile95(surface_distances(patch, truth))
-
-
 def assd(patch: Volume, truth: Volume) -> float:
     """Mean of the `surface_distances`: average symmetric surface distance.
 
@@ -214,22 +198,6 @@ def assd(patch: Volume, truth: Volume) -> float:
         mm.
     """
     return _mean(surface_distances(patch, truth))
-
-
-def rmse(patch: Volume, truth: Volume) -> float:
-    """Root mean square of the `surface_distances`.
-
-    Parameters
-    ----------
-    patch, truth : Volume
-        As for `dice`.
-
-    Returns
-    -------
-    float
-        mm.
-    """
-    return _root_mean_square(surface_distances(patch, truth))
 
 
 def surface_distances(patch: Volume, truth: Volume) -> NDArray[np.float64]:

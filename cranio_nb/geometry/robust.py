@@ -63,11 +63,10 @@ def geman_mcclure_weights(residuals: Array, scale: float | Array, *, times: floa
 
     Parameters
     ----------
-    residuals : ndarray, shape (...)
+    residuals, times
+        As for `cauchy_weights`.
     scale : float or ndarray
         Where the weight is a quarter.
-    times : float or ndarray
-        Weights that these multiply.
 
     Returns
     -------

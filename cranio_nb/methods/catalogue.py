@@ -21,7 +21,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from ..errors import InputRefused
-from ..option import Option, declared
+from ..options import Option, declared
 from ..volume import Volume
 from .piece import Piece
 
@@ -102,7 +102,7 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
     >>> from scipy import ndimage
     >>> from cranio_nb.methods.catalogue import default_options, remove_method
     >>> from cranio_nb.methods.piece import Piece
-    >>> from cranio_nb.option import Option
+    >>> from cranio_nb.options import Option
     >>> @cn.add_method("sheet")
     ... def pieces(bone, openings, *, grow_px: Annotated[int, Option("How far the sheet grows.", 1, 20, "px")] = 2):
     ...     for opening in openings:

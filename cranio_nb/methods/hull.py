@@ -29,7 +29,7 @@ from scipy.spatial import ConvexHull
 
 from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..option import Option
+from ..options import Option
 from ..stages import prosthesis_volume
 from ..vault import radius_measurement, radius_voxels
 from ..vault.ray_grid import RadiusMap

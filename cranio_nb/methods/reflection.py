@@ -33,7 +33,7 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..option import Option
+from ..options import Option
 from ..vault import radius_measurement, radius_voxels, symmetry
 from ..vault.ray_grid import RadiusMap, filled_from_nearest
 from ..vault.symmetry import SymmetryPlane

@@ -41,7 +41,7 @@ from scipy.sparse.linalg import splu
 from ..errors import InputRefused
 from ..geometry import voxel_pieces
 from ..opening import Opening
-from ..option import Option
+from ..options import Option
 from ..prior.around_opening import predict_around
 from ..prior.file import load_prior
 from ..prior.shape_prior import Prior

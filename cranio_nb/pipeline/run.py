@@ -1,13 +1,12 @@
-"""A scan on disk -> a designed and measured prosthesis: the whole pipeline as one call.
+"""A prepared skull -> a designed and measured prosthesis.
 
 For the command line, notebooks and studies; nothing is written here (see `output`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -19,13 +18,13 @@ from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
 from ..mesh import RIM
 from ..methods.catalogue import default_options
-from ..methods.design import check_request, design
+from ..methods.design import design
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..readers import Finding
 from ..vault.remarks import opening_remarks
 from ..volume import Volume
-from .preparation import Clock, Prepared, Progress, check_margin, prepare, touches_border
+from .preparation import Clock, Prepared, Progress, check_margin, touches_border
 
 _THIN = 2.0  # mm: a wall that workshops begin to warn about
 _BESIDE = 20.0  # mm beside an opening within which a patch may reach
@@ -62,49 +61,23 @@ class RunResult:
 
 
 def run_design(
-    path: str | PathLike[str],
+    case: Prepared,
     *,
     method: str = "slicewise",
     preset: str = "default",
-    options: dict[str, Any] | None = None,
-    mask: bool | None = None,
-    label: int | None = None,
-    threshold: float | None = None,
-    opening: Collection[int] = (),
-    planes: tuple[int, int] | None = None,
-    truth: str | PathLike[str] | None = None,
-    allow: Collection[str] = (),
     progress: Progress | None = None,
+    **options: Any,
 ) -> RunResult:
-    """Read a scan, find its openings, design what closes them, and measure it.
+    """Design what closes the openings of a scan, and measure it.
 
     Parameters
     ----------
-    path : path
-        DICOM folder, NIfTI or NRRD file with a CT in HU or a bone mask.
-    method : str
-        A name of the catalogue.
-    preset : str
-        Options to start from: "default", or a preset of the method such as "paper".
-    options : dict, optional
-        Options of the method that differ from the preset.
-    mask : bool, optional
-        As for `read_ct`: True takes every nonzero voxel as bone. By default data of 0 and 1 are a mask.
-    label : int, optional
-        As for `read_ct`: takes the voxels of this value as bone.
-    threshold : float, optional
-        Lowest HU of bone; `segmentation.BONE_HU` when not given.
-    opening : collection of int
-        Numbers of the openings to close, as `cranio-nb inspect` lists them, doubtful and natural ones too; when empty,
-        those that were cut for sure.
-    planes : tuple of int, optional
-        First and last plane (both included): only what lies between them is closed.
-    truth : path, optional
-        Mask of the missing bone on the scan's own grid, to score the design against.
-    allow : collection of str
-        Relaxations for `read_ct`.
+    case : Prepared
+        What `prepare` made of the scan.
+    method, preset, **options
+        As for `design`.
     progress : callable, optional
-        Called with (step, fraction of the whole).
+        Called with (step, fraction of the whole run, of which `prepare` is the first 0.4).
 
     Returns
     -------
@@ -113,7 +86,7 @@ def run_design(
     Raises
     ------
     InputRefused
-        What cannot be read, designed or compared safely.
+        What cannot be designed or compared safely.
     NoOpening
         When there is nothing to close.
 
@@ -124,24 +97,11 @@ def run_design(
     >>> from data_synth import phantom_case
     >>> case = phantom_case("tiny", "burr_hole", 0)
     >>> write_nifti(cn.Volume(case.bone, case.affine), "skull.nii.gz")
-    >>> result = cn.run_design("skull.nii.gz", method="hull", options={"axial": True})
+    >>> result = cn.run_design(cn.prepare("skull.nii.gz"), method="hull", axial=True)
     >>> result.prosthesis.parameters, result.mesh.sound, result.case.bone.shape
     ({'axial': True, 'smooth': True}, True, ...)
     """
-    options = dict(options or {})
-    check_request(method, preset, options)
     report = progress or (lambda step, done: None)
-    case = prepare(
-        path,
-        mask=mask,
-        label=label,
-        threshold=threshold,
-        opening=opening,
-        planes=planes,
-        truth=truth,
-        allow=allow,
-        progress=report,
-    )
     clock = Clock(case.seconds)
     made = design(
         case.bone,

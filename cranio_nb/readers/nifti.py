@@ -13,16 +13,7 @@ import numpy as np
 from ..errors import InputRefused
 from ..grid import Affine
 from .load_report import Finding
-from .stored_image import (
-    GZIP_PACKING,
-    Image,
-    check_promise,
-    check_rest,
-    check_shape,
-    no_orientation,
-    read_exactly,
-    stored_bytes,
-)
+from .stored_image import GZIP_PACKING, Image, check_promise, check_shape, no_orientation, read_voxels, stored_bytes
 
 _MM_PER_UNIT = {0: 1.0, 1: 1000.0, 2: 1.0, 3: 1e-3}  # unknown, metre, mm, micrometre (xyzt_units & 7)
 _LPS = np.diag([-1.0, -1.0, 1.0, 1.0])  # NIfTI: x to the right, y to the front
@@ -71,14 +62,14 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
         count = int(np.prod(shape)) * dtype.itemsize
         check_promise(count, size if packed else size - offset, packing=GZIP_PACKING if packed else 1)
         data.seek(offset)
-        raw = np.frombuffer(read_exactly(data, count), dtype)
-        rest = check_rest(data)
+        content, rest = read_voxels(data, count)
     except (EOFError, OSError, zlib.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
 
     # index -> LPS mm, and the scaling of the numbers
     affine, findings = _affine(header, allow)
     slope, intercept, more = _scaling(header)
+    raw = np.frombuffer(content, dtype)
     native = raw.reshape(shape, order="F").astype(dtype.newbyteorder("="), copy=False)
     return Image("NIfTI", native, affine, slope, intercept, tuple(findings + more + rest))
 

@@ -20,10 +20,9 @@ from .stored_image import (
     GZIP_PACKING,
     Image,
     check_promise,
-    check_rest,
     check_shape,
     no_orientation,
-    read_exactly,
+    read_voxels,
     stored_bytes,
 )
 
@@ -60,10 +59,8 @@ def read_nrrd(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
 
     Parameters
     ----------
-    stream : binary stream
-        The whole file.
-    allow : collection of str
-        ``"no_orientation"`` takes a file without orientation as it lies.
+    stream, allow
+        As for `read_nifti`.
 
     Returns
     -------
@@ -72,8 +69,7 @@ def read_nrrd(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
     Raises
     ------
     InputRefused
-        ``CorruptFile``, ``UnsupportedFile``, ``UnsupportedPixels``, ``BadShape``, ``LimitExceeded``,
-        ``NoOrientation`` or ``BadGeometry``.
+        With the codes of `read_nifti`.
 
     Examples
     --------
@@ -152,7 +148,7 @@ def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[
     elif encoding in ("bzip2", "bz2"):
         data = cast(BinaryIO, bz2.BZ2File(stream))
     try:
-        return read_exactly(data, count), check_rest(data)
+        return read_voxels(data, count)
     except (EOFError, OSError, zlib.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
 

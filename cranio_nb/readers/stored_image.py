@@ -49,12 +49,13 @@ class Image:
     findings: tuple[Finding, ...] = ()
 
 
-def read_exactly(stream: BinaryIO, count: int) -> bytearray:
-    """Read a number of bytes of a stream, inflated or not.
+def read_voxels(stream: BinaryIO, count: int) -> tuple[bytearray, list[Finding]]:
+    """Read as many bytes of voxels as a header declares, and on to the end, where packed data hold their checksum.
 
     Parameters
     ----------
     stream : binary stream
+        At the first voxel, inflated or not. No more than 2^26 bytes behind the voxels are inflated.
     count : int
         Bytes that the header declares.
 
@@ -62,6 +63,8 @@ def read_exactly(stream: BinaryIO, count: int) -> bytearray:
     -------
     bytearray
         `count` of them.
+    list of Finding
+        A warning where bytes are left; else empty.
 
     Raises
     ------
@@ -71,8 +74,10 @@ def read_exactly(stream: BinaryIO, count: int) -> bytearray:
     Examples
     --------
     >>> import io
-    >>> read_exactly(io.BytesIO(b"voxels and more"), 6)
-    bytearray(b'voxels')
+    >>> read_voxels(io.BytesIO(b"voxels"), 6)
+    (bytearray(b'voxels'), [])
+    >>> read_voxels(io.BytesIO(b"voxels and more"), 6)[1][0].values
+    {'at_least': 9}
     """
     # grows with what is there, and not with what is promised
     content = bytearray()
@@ -82,7 +87,7 @@ def read_exactly(stream: BinaryIO, count: int) -> bytearray:
             message = f"The file is cut short: it holds {len(content)} of {count} bytes of voxels."
             raise InputRefused("CorruptFile", message, "Copy the file again from its source.")
         content += part
-    return content
+    return content, _bytes_left(stream)
 
 
 def check_promise(count: int, stored: int, *, packing: int) -> None:
@@ -145,27 +150,8 @@ def stored_bytes(stream: BinaryIO) -> int:
     return size
 
 
-def check_rest(stream: BinaryIO) -> list[Finding]:
-    """Read on to the end, where packed data hold their checksum.
-
-    Parameters
-    ----------
-    stream : binary stream
-        Behind the voxels. No more than 2^26 bytes of it are inflated.
-
-    Returns
-    -------
-    list of Finding
-        A warning where bytes are left; else empty.
-
-    Examples
-    --------
-    >>> import io
-    >>> check_rest(io.BytesIO(b""))
-    []
-    >>> check_rest(io.BytesIO(b"more"))[0].values
-    {'at_least': 4}
-    """
+def _bytes_left(stream: BinaryIO) -> list[Finding]:
+    """A warning where bytes are left."""
     rest = 0
     while rest <= _MAX_REST_BYTES:
         part = stream.read(2**22)

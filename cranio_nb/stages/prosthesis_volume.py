@@ -112,7 +112,7 @@ def fill_partial_loss(
     Returns
     -------
     ndarray of bool, shape (R, C)
-        The patch; it shares no pixel with the bone.
+        As for `fill_gap`.
 
     Notes
     -----

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused
-from ..option import THRESHOLD
+from ..options import THRESHOLD
 from ..volume import Volume
 
 BONE_HU: float = THRESHOLD.default

@@ -108,27 +108,28 @@ def _judge(task: Exercise, answer: Any, cases: list[tuple[Any, ...]]) -> tuple[i
         return 0, "The function returns nothing: is there a `return`?"
     # a point for each that is near enough to the right one
     errors = [_error(task, value, task.right(*case)) for value, case in zip(found, cases, strict=True)]
-    points = sum(error <= task.tolerance for error in errors)
+    points = sum(error <= task.answer.tolerance for error in errors)
     return points, _say(task, cases, found, errors)
 
 
 def _say(task: Exercise, cases: list[tuple[Any, ...]], found: list[Any], errors: list[float]) -> str:
     """The sentence: praise, the typical mistake that gives just these answers, or how far off they are."""
     # right; else a known mistake that gives the same answers; else the distance
-    worst = max(errors)
-    if worst <= task.tolerance:
+    worst, wanted = max(errors), task.answer
+    if worst <= wanted.tolerance:
         return f"Right: {task.praise}"
     for mistake, sentence in task.mistakes:
-        if all(_error(task, value, mistake(*case)) <= task.tolerance for value, case in zip(found, cases, strict=True)):
+        apart = (_error(task, value, mistake(*case)) for value, case in zip(found, cases, strict=True))
+        if all(error <= wanted.tolerance for error in apart):
             return sentence
     if not all(_finite(value) for value in found):
         return (
             "There is NaN or infinity in the answer, not a finite number: which step has no result (arcsin, sqrt, / 0)?"
         )
     if np.isinf(worst):
-        return f"The answer does not have the right form: {task.form}."
-    unit = f" {task.unit}" if task.unit else ""
-    return f"Not yet: off by up to {worst:.2g}{unit}, where {task.tolerance:.2g}{unit} is allowed."
+        return f"The answer does not have the right form: {wanted.form}."
+    unit = f" {wanted.unit}" if wanted.unit else ""
+    return f"Not yet: off by up to {worst:.2g}{unit}, where {wanted.tolerance:.2g}{unit} is allowed."
 
 
 def _finite(value: Any) -> bool:
@@ -142,7 +143,7 @@ def _finite(value: Any) -> bool:
 def _error(task: Exercise, value: Any, wanted: Any) -> float:
     """How far two answers lie apart; inf where they cannot be compared."""
     try:
-        error = float(task.error(value, wanted))
+        error = float(task.answer.error(value, wanted))
     except Exception:
         return float("inf")
     return error if np.isfinite(error) else float("inf")

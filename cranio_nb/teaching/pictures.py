@@ -164,15 +164,10 @@ def show_curve(ax: Axes, points: ArrayLike, *, px: float, line: int = 0, label: 
 
     Parameters
     ----------
-    ax : Axes
-    points : array_like, shape (n, 2)
-        (row, col) px.
-    px : float
-        Size of a pixel, mm.
+    ax, points, px, label
+        As for `show_points`.
     line : int
         Index into `LINES`, for colour and style.
-    label : str
-        Name in the legend.
     """
     row, col = np.asarray(points, float).reshape(-1, 2).T * px
     colour, style = LINES[line]

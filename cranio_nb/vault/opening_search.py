@@ -74,14 +74,8 @@ def survey_openings(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask of the skull.
-    scan : Volume, optional
-        HU on the same grid, which shows bone too thin for the threshold; a mask says no more than `bone`.
-    frame : HeadFrame, optional
-        How the head lies; found when not given.
-    min_diameter_mm : float
-        Width of the smallest opening.
+    bone, scan, frame, min_diameter_mm
+        As for `find_openings`.
 
     Returns
     -------

@@ -97,10 +97,8 @@ def surface_radii(
 
     Parameters
     ----------
-    bone : Volume
-        Bool mask.
-    centre : ndarray, shape (3,)
-        Where the rays start, world mm.
+    bone, centre
+        As for `expected_radius`.
     directions : ndarray, shape (..., 3)
         Unit vectors, world.
     expected : ndarray, shape (...)

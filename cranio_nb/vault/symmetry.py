@@ -102,7 +102,7 @@ class SymmetryPlane:
         Parameters
         ----------
         points : ndarray, shape (..., 3)
-            World mm.
+            As for `distance`.
 
         Returns
         -------
@@ -152,10 +152,8 @@ def find_symmetry_plane(bone: Volume, centre: Array, axes: Array | None = None) 
     bone : Volume
         Bool mask of the skull, planes rising to the top of the head. The head may be turned on its grid by about
         35 degrees (nodding counts for nothing, as it stays in the plane).
-    centre : ndarray, shape (3,)
-        World mm of a point inside the cranial cavity.
-    axes : ndarray, shape (3, 3), optional
-        `Opening.head_axes`; found in the bone when not given.
+    centre, axes
+        As for `measure_outer_surface`.
 
     Returns
     -------

@@ -55,48 +55,15 @@ class Braincase(HeadShape):
     rotation: Array | None = None
 
     def outer_radius(self, directions: ArrayLike) -> Array:
-        """Distance of the outer skull surface from the centre.
-
-        Parameters
-        ----------
-        directions : array_like, shape (..., 3)
-            Unit vectors in the head's frame.
-
-        Returns
-        -------
-        ndarray, shape (...)
-            mm.
-        """
+        """As for `HeadShape`, with the bumps; directions in the head's frame."""
         return super().outer_radius(directions) + self._bump(directions)[0]
 
     def bone_thickness(self, directions: ArrayLike) -> Array:
-        """Thickness of the skull along rays from the centre.
-
-        Parameters
-        ----------
-        directions : array_like, shape (..., 3)
-            Unit vectors in the head's frame.
-
-        Returns
-        -------
-        ndarray, shape (...)
-            mm.
-        """
+        """As for `HeadShape`, with the bumps; directions in the head's frame."""
         return super().bone_thickness(directions) + self._bump(directions)[1]
 
     def gradients(self, offsets: ArrayLike) -> tuple[Array, Array]:
-        """Gradients of |p| - r(p / |p|) for the outer and the inner surface.
-
-        Parameters
-        ----------
-        offsets : array_like, shape (..., 3)
-            Points from the centre, head mm; not zero.
-
-        Returns
-        -------
-        tuple of ndarray, shape (..., 3)
-            Outer, inner.
-        """
+        """As for `HeadShape`, with the bumps; offsets in head mm."""
         p = np.asarray(offsets, float)
         length = lengths(p)[..., None]
         d = p / length
@@ -130,8 +97,8 @@ class Braincase(HeadShape):
 
         Parameters
         ----------
-        offsets : array_like, shape (..., 3)
-            Points from the centre, head mm; not zero.
+        offsets : array_like
+            As for `surfaces`.
 
         Returns
         -------
@@ -190,16 +157,12 @@ def braincase(
 
     Parameters
     ----------
-    rng : Generator
-        Source of the variation.
-    centre : array_like, shape (3,)
-        World mm.
+    rng, centre, thickness_scale
+        As for `head_shape`.
     rotation : ndarray, shape (3, 3)
         Head frame -> world.
     asymmetry : float
         Factor on what makes left and right differ; 0 gives mirror images.
-    thickness_scale : float
-        Factor on the skull's thickness.
 
     Returns
     -------

@@ -7,7 +7,7 @@ distance in mm (exact for cones of one radius, boxes and round rings, to first o
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +73,25 @@ class Cone:
 
 
 @dataclass(frozen=True)
-class Ellipsoid:
+class Centred:
+    """What solids about a centre share.
+
+    Parameters
+    ----------
+    centre : tuple of float
+        mm.
+    """
+
+    centre: Triple
+
+    def on_side(self, side: float) -> Self:
+        """The solid itself (1) or its mirror image (-1)."""
+        x, y, z = self.centre
+        return replace(self, centre=(side * x, y, z))
+
+
+@dataclass(frozen=True)
+class Ellipsoid(Centred):
     """Ellipsoid along the axes.
 
     Parameters
@@ -82,7 +100,6 @@ class Ellipsoid:
         mm.
     """
 
-    centre: Triple
     radii: Triple
 
     @property
@@ -98,14 +115,9 @@ class Ellipsoid:
         slope = np.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
         return norm * (1 - norm) / np.maximum(slope, 1e-6)
 
-    def on_side(self, side: float) -> Ellipsoid:
-        """The ellipsoid itself (1) or its mirror image (-1)."""
-        x, y, z = self.centre
-        return replace(self, centre=(side * x, y, z))
-
 
 @dataclass(frozen=True)
-class Box:
+class Box(Centred):
     """Box along the axes with rounded edges.
 
     Parameters
@@ -116,7 +128,6 @@ class Box:
         Radius of the edges, mm.
     """
 
-    centre: Triple
     half: Triple
     rounding: float = 0.5
 
@@ -132,14 +143,9 @@ class Box:
         x, y, z = (np.maximum(o, 0) for o in over)
         return self.rounding - np.sqrt(x * x + y * y + z * z) - np.minimum(most, 0)
 
-    def on_side(self, side: float) -> Box:
-        """The box itself (1) or its mirror image (-1)."""
-        x, y, z = self.centre
-        return replace(self, centre=(side * x, y, z))
-
 
 @dataclass(frozen=True)
-class Ring:
+class Ring(Centred):
     """Ring of elliptic section about an axis along z; it may end at a plane y, as a dental arch does.
 
     Parameters
@@ -156,7 +162,6 @@ class Ring:
         Largest y of the ring, mm.
     """
 
-    centre: Triple
     radius: float
     across: float
     height: float
@@ -176,11 +181,6 @@ class Ring:
         z = z / self.height
         inside = (1 - np.sqrt(away * away + z * z)) * min(self.across, self.height)
         return inside if np.isinf(self.front_of) else np.minimum(inside, self.front_of - p[1])
-
-    def on_side(self, side: float) -> Ring:
-        """The ring itself (1) or its mirror image (-1)."""
-        x, y, z = self.centre
-        return replace(self, centre=(side * x, y, z))
 
 
 @dataclass(frozen=True)

@@ -37,12 +37,18 @@ def lab_server(tmp_path_factory):
 
 @pytest.fixture
 def open_notebook(chromium, lab_server):
-    """`open_notebook(name)`: a page with the notebook open and all its cells run."""
+    """`open_notebook(name)`: a page with the notebook open and all its cells run, and what its console complains of."""
     pages = []
 
     def opened(name, timeout=240):
         page = chromium.new_page(viewport={"width": 1500, "height": 5000})
         pages.append(page)
+        page.complaints = []
+        page.on("console", lambda said: page.complaints.append(said.text) if said.type == "error" else None)
+        page.on("pageerror", lambda error: page.complaints.append(str(error)))
+        page.on(
+            "response", lambda got: page.complaints.append(f"{got.status} {got.url}") if got.status >= 400 else None
+        )
         run_all(page, lab_server[0], name, timeout)
         shots = os.environ.get("CRANIO_NB_SCREENSHOTS")
         if shots:

@@ -106,6 +106,7 @@ def test_sliders_move_pictures_the_balloon_plays_and_the_scene_is_there(open_not
     assert np.abs(shot(box.locator("img").first) - still).max() > 60
 
     frame = page.locator("iframe.pyvista, iframe[srcdoc]").first
+    assert frame.get_attribute("title") == "A skull with a hole."
     frame.scroll_into_view_if_needed()
     assert until(lambda: bone_share(frame) > 0.1, 40), "the scene shows no skull"
     before = shot(frame)
@@ -120,7 +121,7 @@ def test_sliders_move_pictures_the_balloon_plays_and_the_scene_is_there(open_not
         return until(lambda: (np.abs(shot(frame) - before).max(axis=2) > 20).mean() > 0.02)
 
     assert any(turned() for _ in range(3)), "the scene does not turn"  # one that still loads may miss a drag
-    assert no_errors(page) == []
+    assert no_errors(page) == [] and page.complaints == []
 
 
 def test_a_panel_fits_a_laptop_and_obeys_mouse_keys_and_typing(open_notebook, small):

@@ -7,7 +7,7 @@ from cli_runs import cranio, digest
 from stand_ins import blind, compared_case, compared_home, found  # noqa: F401  (fixtures)
 
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.pipeline import run
+from cranio_nb.pipeline import preparation, run
 from cranio_nb.volume import Volume
 from data_synth import Case, phantom_case
 from data_synth.files import write_case
@@ -41,7 +41,7 @@ def done(home, tmp_path_factory) -> Path:
 @pytest.fixture(scope="session")
 def paper(home) -> run.RunResult:
     """The fast preset's result, also to stand in where only the writing is looked at."""
-    return run.run_design(home / "ct", preset="paper")
+    return run.run_design(preparation.prepare(home / "ct"), preset="paper")
 
 
 @pytest.fixture(scope="session")

@@ -10,11 +10,11 @@ import numpy as np
 import pydicom
 import pytest
 import trimesh
-from cli_runs import OUTPUTS, assert_refused, cranio, digest
+from cli_runs import OUTPUTS, assert_refused, cranio, digest, run_is
 
 from cranio_nb.output import design_folder
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.pipeline import preparation, run
+from cranio_nb.pipeline import preparation
 from cranio_nb.pipeline import survey as pipeline_survey
 from cranio_nb.readers import read_ct
 from cranio_nb.vault import opening_search
@@ -227,12 +227,12 @@ def test_a_failure_while_writing_leaves_nothing(home, paper, tmp_path, monkeypat
     def full_disk(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
+    run_is(paper, monkeypatch)
     monkeypatch.setattr(design_folder.files, "write_text", full_disk)
     assert_refused(cranio("design", home / "ct", "--out", tmp_path / "new" / "out"), 5, "No space left")
     assert list(tmp_path.iterdir()) == []
     monkeypatch.undo()
-    monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
+    run_is(paper, monkeypatch)
     assert cranio("design", home / "ct", "--out", tmp_path / "old").exit_code == 0
     before = digest(tmp_path)
     monkeypatch.setattr(design_folder.files, "write_text", full_disk)
@@ -241,7 +241,7 @@ def test_a_failure_while_writing_leaves_nothing(home, paper, tmp_path, monkeypat
 
 
 def test_an_existing_folder_keeps_what_is_not_ours(home, paper, tmp_path, monkeypatch):
-    monkeypatch.setattr(run, "run_design", lambda *a, **k: paper)
+    run_is(paper, monkeypatch)
     (tmp_path / "notes.txt").write_text("mine")
     for _ in range(2):
         assert cranio("design", home / "ct", "--out", tmp_path).exit_code == 0

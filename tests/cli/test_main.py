@@ -7,14 +7,14 @@ import pytest
 from cli_runs import assert_refused, cranio
 
 from cranio_nb.cli.main import main
-from cranio_nb.pipeline import run
+from cranio_nb.pipeline import preparation
 
 
 def test_unforeseen_errors_are_one_sentence_and_debug_shows_them(home, tmp_path, monkeypatch):
     def broken(*_: object, **__: object) -> None:
         raise RuntimeError("secret name")
 
-    monkeypatch.setattr(run, "run_design", broken)
+    monkeypatch.setattr(preparation, "prepare", broken)
     arguments = ("design", home / "ct", "--out", tmp_path / "out")
     plain = cranio(*arguments)
     assert_refused(plain, 1, "--debug")

@@ -9,17 +9,7 @@ from measured_shapes import EMPTY, block, oblique
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.evaluation.scores import (
-    assd,
-    border_dice,
-    dice,
-    hd95,
-    overlap,
-    rmse,
-    score,
-    surface_distances,
-    volume_ratio,
-)
+from cranio_nb.evaluation.scores import assd, border_dice, dice, overlap, score, surface_distances, volume_ratio
 from cranio_nb.volume import Volume
 
 
@@ -36,10 +26,11 @@ def test_a_block_shifted_along_an_axis_has_closed_forms(axis, flip):
     assert overlap(patch, truth) == (size[axis] - n) * size.prod() // size[axis]
     far = surface_distances(patch, truth)
     assert far.max() == pytest.approx(n * spacing[axis])
-    assert assd(patch, truth) == pytest.approx(far.mean())
-    assert rmse(patch, truth) == pytest.approx(np.sqrt((far**2).mean()))
-    assert hd95(patch, truth) == pytest.approx(np.percentile(far, 95))
-    assert 0 < assd(patch, truth) < rmse(patch, truth) < hd95(patch, truth) + 1e-12
+    found = score(patch, truth, skull=truth)
+    assert found.assd == assd(patch, truth) == pytest.approx(far.mean())
+    assert found.rmse == pytest.approx(np.sqrt((far**2).mean()))
+    assert found.hd95 == pytest.approx(np.percentile(far, 95))
+    assert 0 < found.assd < found.rmse < found.hd95 + 1e-12
 
 
 def test_concentric_balls_are_as_far_apart_as_their_radii():
@@ -47,9 +38,10 @@ def test_concentric_balls_are_as_far_apart_as_their_radii():
     centre = grid.to_world((29.4, 49.7, 39.1))
     radius = np.linalg.norm(grid.to_world(np.stack(np.indices(grid.shape), -1)) - centre, axis=-1)
     small, large = grid.with_voxels(radius <= 18), grid.with_voxels(radius <= 22)
-    assert assd(small, large) == pytest.approx(4, abs=0.25)  # half a voxel: surfaces are sets of voxel centres
-    assert rmse(small, large) == pytest.approx(4, abs=0.25)
-    assert hd95(small, large) == pytest.approx(4, abs=0.6)
+    found = score(small, large, skull=large)
+    assert found.assd == pytest.approx(4, abs=0.25)  # half a voxel: surfaces are sets of voxel centres
+    assert found.rmse == pytest.approx(4, abs=0.25)
+    assert found.hd95 == pytest.approx(4, abs=0.6)
     assert dice(small, large) == pytest.approx(2 * 18**3 / (18**3 + 22**3), abs=0.002)
     assert volume_ratio(small, large) == pytest.approx((18 / 22) ** 3, rel=0.005)
 
@@ -57,7 +49,7 @@ def test_concentric_balls_are_as_far_apart_as_their_radii():
 def test_a_missing_part_is_seen_from_both_sides():
     whole, half = (Volume(block((4, 8, 8), size), np.eye(4)) for size in ((6, 20, 20), (6, 20, 10)))
     np.testing.assert_allclose(np.sort(surface_distances(half, whole)), np.sort(surface_distances(whole, half)))
-    assert hd95(half, whole) > 8
+    assert score(half, whole, skull=whole).hd95 > 8
 
 
 def test_border_dice_counts_only_voxels_near_bone():
@@ -97,10 +89,11 @@ def test_peer_agrees_on_dice_and_surface_distance():
     peer.Execute(*images)
     at = np.diag([*spacing, 1])
     assert dice(Volume(a, at), Volume(b, at)) == pytest.approx(peer.GetDiceCoefficient(), abs=1e-12)
-    assert hd95(Volume(a, at), Volume(b, at)) == np.percentile(surface_distances(Volume(a, at), Volume(b, at)), 95)
+    far = surface_distances(Volume(a, at), Volume(b, at))
+    assert score(Volume(a, at), Volume(b, at), Volume(b, at)).hd95 == np.percentile(far, 95)
     hausdorff = sitk.HausdorffDistanceImageFilter()
     hausdorff.Execute(*images)
-    assert surface_distances(Volume(a, at), Volume(b, at)).max() == pytest.approx(hausdorff.GetHausdorffDistance())
+    assert far.max() == pytest.approx(hausdorff.GetHausdorffDistance())
 
 
 def test_two_empty_masks_agree():

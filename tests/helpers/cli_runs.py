@@ -3,9 +3,11 @@
 import hashlib
 from pathlib import Path
 
+import pytest
 from click.testing import CliRunner, Result
 
 from cranio_nb.cli.main import main
+from cranio_nb.pipeline import preparation, run
 
 OUTPUTS = {"prosthesis.stl", "patch.nii.gz", "design.json", "report.html", "manifest.json"}
 
@@ -13,6 +15,12 @@ OUTPUTS = {"prosthesis.stl", "patch.nii.gz", "design.json", "report.html", "mani
 def cranio(*arguments: object) -> Result:
     """Run a command."""
     return CliRunner().invoke(main, [str(a) for a in arguments])
+
+
+def run_is(result: run.RunResult, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let commands find this result, where only the writing is looked at."""
+    monkeypatch.setattr(preparation, "prepare", lambda *a, **k: result.case)
+    monkeypatch.setattr(run, "run_design", lambda *a, **k: result)
 
 
 def digest(folder: Path) -> dict[str, str]:

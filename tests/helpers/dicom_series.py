@@ -18,6 +18,7 @@ from cranio_nb.readers import LoadReport, read_ct
 from cranio_nb.readers.dicom.parse import parse_file
 from cranio_nb.readers.dicom.slice_header import SliceHeader, read_headers
 from cranio_nb.volume import Volume
+from data_synth.fault_series import Edit
 
 CT_IMAGE = "1.2.840.10008.5.1.4.1.1.2"
 AXIAL = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0)
@@ -114,18 +115,11 @@ def save(folder: Path, datasets: Iterable[Dataset], *, syntax: str | None = None
     return folder
 
 
-def edit(at: int | slice, **values: object) -> Callable[[list[Dataset]], None]:
-    """An edit of a series: set elements of one or more slices; None deletes."""
-
-    def change(datasets: list[Dataset]) -> None:
-        for ds in [datasets[at]] if isinstance(at, int) else datasets[at]:
-            for name, value in values.items():
-                if value is None:
-                    del ds[name]
-                else:
-                    setattr(ds, name, value)
-
-    return change
+def save_changed(folder: Path, change: Edit) -> Path:
+    """A folder with the series of the head after an edit."""
+    datasets = series(head())
+    change(datasets)
+    return save(folder / "scan", datasets)
 
 
 def refusal(folder: Path, **options: object) -> InputRefused:
@@ -144,22 +138,6 @@ def codes(report: LoadReport) -> set[str]:
     """The findings' codes; whatever they hold can be stored as JSON."""
     json.dumps([finding.values for finding in report.findings], allow_nan=False)
     return {finding.code for finding in report.findings}
-
-
-def drop(*indices: int) -> Callable[[list[Dataset]], None]:
-    def change(datasets: list[Dataset]) -> None:
-        for index in sorted(indices, reverse=True):
-            del datasets[index]
-
-    return change
-
-
-def chain(*edits: Callable[[list[Dataset]], None]) -> Callable[[list[Dataset]], None]:
-    def change(datasets: list[Dataset]) -> None:
-        for one in edits:
-            one(datasets)
-
-    return change
 
 
 def truth(orientation: object = AXIAL) -> np.ndarray:

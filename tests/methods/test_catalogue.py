@@ -12,7 +12,7 @@ import cranio_nb as cn
 from cranio_nb.errors import InputRefused, NoOpening
 from cranio_nb.methods import catalogue, transfer
 from cranio_nb.methods.piece import Piece
-from cranio_nb.option import Option
+from cranio_nb.options import Option
 
 
 def toy(bone, openings, *, grow_px=2):

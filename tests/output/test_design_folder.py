@@ -12,6 +12,7 @@ from cranio_nb.errors import CannotWrite
 from cranio_nb.methods.design import design
 from cranio_nb.output import design_folder, files
 from cranio_nb.output.design_folder import made_record, save
+from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import run_design
 from cranio_nb.prosthesis import Prosthesis
 from cranio_nb.readers import read_ct
@@ -114,7 +115,7 @@ def test_a_folder_that_is_in_the_way_is_refused_before_the_mesh_is_checked(made,
 
 def test_a_run_saved_by_name_is_what_the_run_writes(phantom, tmp_path):
     write_case(tmp_path, phantom())
-    result = run_design(tmp_path / "ct", method="hull")
+    result = run_design(prepare(tmp_path / "ct"), method="hull")
     (tmp_path / "run").mkdir()
     design_folder.write_outputs(result, tmp_path / "run")
     save(result.prosthesis, tmp_path / "saved", result.case.load)

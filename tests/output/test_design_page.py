@@ -8,6 +8,7 @@ from html_page import Page, assert_pictures_have_words, assert_self_contained, a
 from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, balloon_ranges
 from cranio_nb.output import design_page
 from cranio_nb.output.design_pictures import N_SLICES
+from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import RunResult, run_design
 from cranio_nb.readers import Finding
 from data_synth import phantom_case
@@ -18,7 +19,7 @@ from data_synth.files import write_case
 def result(tmp_path_factory) -> RunResult:
     folder = tmp_path_factory.mktemp("case")
     write_case(folder, phantom_case("tiny", "unilateral", 0))
-    return run_design(folder / "ct", truth=folder / "truth.nii.gz", preset="paper")
+    return run_design(prepare(folder / "ct", truth=folder / "truth.nii.gz"), preset="paper")
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.output import design_pictures
+from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import run_design
 from data_synth import phantom_case
 from data_synth.files import write_case
@@ -15,7 +16,7 @@ from data_synth.files import write_case
 def result(tmp_path_factory):
     folder = tmp_path_factory.mktemp("case")
     write_case(folder, phantom_case("tiny", "unilateral", 0))
-    return run_design(folder / "ct", truth=folder / "truth.nii.gz", preset="paper")
+    return run_design(prepare(folder / "ct", truth=folder / "truth.nii.gz"), preset="paper")
 
 
 def test_the_first_view_faces_the_opening(result):

@@ -35,7 +35,7 @@ def test_a_patch_that_runs_away_is_the_methods_fault_everywhere_alike(scan):
         case = prepare(scan)
         assert case.openings[0].sheet.voxels[:, -1].sum() == 0
         with pytest.raises(InputRefused) as refused:
-            run_design(scan, method="runaway")
+            run_design(case, method="runaway")
         tried = attempt(case.bone, case.openings, Contender("runaway"))
     finally:
         catalogue.remove_method("runaway")

@@ -4,12 +4,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import as_unsigned_without_rescale, codes, edit, head, save, series, shift_hu
+from dicom_series import as_unsigned_without_rescale, codes, head, save, series, shift_hu
 from image_files import SMALL, file_refusal, stored_head, write_nifti, write_nrrd
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
 from cranio_nb.readers.hu_checks import AIR_HU, check_hu, clear_padding, is_mask
+from data_synth.fault_edits import set_elements
 
 
 @pytest.mark.parametrize("dtype", ["u1", "i2", "u2", "i4", "f4", "f8"])
@@ -108,7 +109,7 @@ EVERY = slice(None)
 def test_allowances_turn_refusals_into_warnings(tmp_path: Path) -> None:
     for name, change, allow, code in (
         ("a", shift_hu(1000), "implausible_hu", "ImplausibleHU"),
-        ("b", edit(EVERY, Modality="OT"), "wrong_modality", "WrongModality"),
+        ("b", set_elements(EVERY, Modality="OT"), "wrong_modality", "WrongModality"),
     ):
         datasets = series(head())
         change(datasets)

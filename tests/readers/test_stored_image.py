@@ -16,9 +16,8 @@ from cranio_nb.readers.stored_image import (
     GZIP_PACKING,
     MAX_VOXELS,
     check_promise,
-    check_rest,
     check_shape,
-    read_exactly,
+    read_voxels,
 )
 
 
@@ -122,11 +121,10 @@ class Drops(io.BytesIO):
 
 def test_bytes_are_read_in_whatever_parts_they_come() -> None:
     content = bytes(range(256)) * 3
-    stream = Drops(content)
-    assert read_exactly(stream, 700) == content[:700]
-    assert check_rest(stream)[0].values == {"at_least": 68}
+    voxels, findings = read_voxels(Drops(content), 700)
+    assert voxels == content[:700] and findings[0].values == {"at_least": 68}
     with pytest.raises(InputRefused, match="it holds 768 of 769 bytes"):
-        read_exactly(Drops(content), 769)
+        read_voxels(Drops(content), 769)
 
 
 @pytest.mark.parametrize("sizes", [[4, 5], [4, 5, 0], [4, 5, 6, 2]])

@@ -32,7 +32,7 @@ from scipy import ndimage
 
 from ...geometry import voxel_pieces
 from ...opening import Opening
-from ...option import Option
+from ...options import Option
 from ...vault import radius_measurement, radius_voxels
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume

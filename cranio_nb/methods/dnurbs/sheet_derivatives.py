@@ -38,10 +38,8 @@ def spline_products(
 
     Parameters
     ----------
-    v, u : ndarray, shape (k,)
-        Parameters.
-    spans : tuple of int
-        Along v and u.
+    v, u, spans
+        As for `tensor`.
     kinds : sequence of (int, int)
         (times by v, times by u), lower ones first; by default up to the second.
 

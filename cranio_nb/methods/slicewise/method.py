@@ -15,7 +15,7 @@ from typing import Annotated, Any
 
 from ...geometry import voxel_pieces
 from ...opening import Opening
-from ...option import Option
+from ...options import Option
 from ...stages import deformable_model
 from ...volume import Volume
 from ..piece import Piece

@@ -32,7 +32,7 @@ from ...errors import InputRefused
 from ...geometry import voxel_pieces
 from ...mesh import Mesh
 from ...opening import Opening
-from ...option import Option
+from ...options import Option
 from ...vault import radius_measurement
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume

@@ -55,9 +55,8 @@ def read_dicom(
 
     Returns
     -------
-    volume : Volume
-        HU as int16 or float32, or bool for a mask; planes up, rows back, columns left.
-    report : LoadReport
+    volume, report
+        As for `cranio_nb.readers.read_ct`.
 
     Raises
     ------

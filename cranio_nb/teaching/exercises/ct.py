@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .task import Exercise, largest_difference, small_head
+from .task import Answer, Exercise, small_head
 
 
 def _grey(hu, centre, width):
@@ -43,10 +43,7 @@ EXERCISES: dict[str, Exercise] = {
     "1.1": Exercise(
         cases=_slices,
         right=_grey,
-        error=largest_difference,
-        unit="grey levels",
-        tolerance=1.0,
-        form="an array like the slice, 0 to 255",
+        answer=Answer("an array like the slice, 0 to 255", unit="grey levels", tolerance=1.0),
         mistakes=(
             (lambda h, c, w: (h - (c - w / 2)) / w * 255, "Values outside the window leave 0 to 255: clip them."),
             (lambda h, c, w: np.clip((h - c) / w, 0, 1) * 255, "The window starts at centre - width / 2."),
@@ -68,10 +65,7 @@ EXERCISES: dict[str, Exercise] = {
     "1.2": Exercise(
         cases=_places,
         right=lambda affine, index: affine[:3, :3] @ index + affine[:3, 3],
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-6,
-        form="three numbers x, y, z",
+        answer=Answer("three numbers x, y, z", unit="mm", tolerance=1e-6),
         mistakes=(
             (lambda a, i: a[:3, :3] @ i, "The origin is missing: voxel (0, 0, 0) does not lie at 0, 0, 0 mm."),
             (
@@ -94,10 +88,7 @@ EXERCISES: dict[str, Exercise] = {
     "1.3": Exercise(
         cases=_positions,
         right=_step,
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-6,
-        form="one number",
+        answer=Answer("one number", unit="mm", tolerance=1e-6),
         mistakes=(
             (
                 lambda p, n: p[1, 2] - p[0, 2],

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...curves import cubic, spiral
 from ...stages.deformable_model import inflate
-from .task import Exercise, largest_difference, small_head
+from .task import Answer, Exercise, small_head
 
 _PX = 0.45  # mm: the paper's pixel
 
@@ -66,10 +66,7 @@ EXERCISES: dict[str, Exercise] = {
     "4.1": Exercise(
         cases=_pressures,
         right=lambda k, n: k * (n - 1) ** 2 / 8,
-        error=largest_difference,
-        unit="px",
-        tolerance=1e-6,
-        form="one number",
+        answer=Answer("one number", unit="px", tolerance=1e-6),
         mistakes=(
             (lambda k, n: k * n**2 / 8, "N counts the steps between snaxels: N = n - 1."),
             (lambda k, n: k * (n - 1) ** 2 / 2, "Four times too high: where along the curve does the apex lie?"),
@@ -82,10 +79,7 @@ EXERCISES: dict[str, Exercise] = {
     "4.2": Exercise(
         cases=_tangents,
         right=_tangent_pressure,
-        error=largest_difference,
-        unit="px per index squared",
-        tolerance=1e-6,
-        form="one number",
+        answer=Answer("one number", unit="px per index squared", tolerance=1e-6),
         mistakes=(
             (lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / n**2, "N counts the steps between snaxels: N = n - 1."),
             (
@@ -120,10 +114,12 @@ EXERCISES: dict[str, Exercise] = {
     "4.3": Exercise(
         cases=_tangents,
         right=_at_rest,
-        error=_mm_off,
-        unit="mm",
-        tolerance=0.1,
-        form="an array (n, 2) of (along, out) from one end of the gap to the other",
+        answer=Answer(
+            "an array (n, 2) of (along, out) from one end of the gap to the other",
+            unit="mm",
+            tolerance=0.1,
+            error=_mm_off,
+        ),
         mistakes=(
             (
                 lambda L, a, b, n: _relaxed(L, a, b, n, 0.062),

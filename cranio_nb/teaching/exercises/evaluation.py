@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from .task import Exercise, largest_difference
+from .task import Answer, Exercise
 
 
 def _clouds():
@@ -38,10 +38,7 @@ EXERCISES: dict[str, Exercise] = {
     "7.1": Exercise(
         cases=_clouds,
         right=lambda a, b: np.percentile(_both_ways(a, b), 95),
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-6,
-        form="one number",
+        answer=Answer("one number", unit="mm", tolerance=1e-6),
         mistakes=(
             (
                 lambda a, b: np.percentile(cKDTree(b).query(a)[0], 95),
@@ -76,10 +73,7 @@ EXERCISES: dict[str, Exercise] = {
     "7.2": Exercise(
         cases=_planes,
         right=_mirrored,
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-6,
-        form="an array like the points",
+        answer=Answer("an array like the points", unit="mm", tolerance=1e-6),
         mistakes=(
             (lambda p, n, o: p - ((p - o) @ n)[:, None] * n, "The points stop on the plane: go twice as far."),
             (

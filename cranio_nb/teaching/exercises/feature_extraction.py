@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import ndimage
 
-from .task import Exercise, degrees_apart, different_pixels, largest_difference, small_head
+from .task import Answer, Exercise, degrees_apart, different_pixels, small_head
 
 
 def _bones():
@@ -64,10 +64,7 @@ EXERCISES: dict[str, Exercise] = {
     "3.1": Exercise(
         cases=_bones,
         right=_inner_edge,
-        error=different_pixels,
-        unit="pixels",
-        tolerance=0.0,
-        form="a mask like the one given",
+        answer=Answer("a mask like the one given", unit="pixels", tolerance=0.0, error=different_pixels),
         mistakes=(
             (lambda b: ndimage.binary_dilation(b) & ~b, "These pixels lie outside the bone; B is part of the bone."),
             (
@@ -95,10 +92,7 @@ EXERCISES: dict[str, Exercise] = {
     "3.2": Exercise(
         cases=_clouds,
         right=_line,
-        error=degrees_apart,
-        unit="degrees",
-        tolerance=0.5,
-        form="one direction: two numbers (row, col)",
+        answer=Answer("one direction: two numbers (row, col)", unit="degrees", tolerance=0.5, error=degrees_apart),
         mistakes=(
             (_by_slope, "A slope of col over row fails for points along a row: no such line stands upright."),
             (
@@ -130,10 +124,7 @@ EXERCISES: dict[str, Exercise] = {
     "3.3": Exercise(
         cases=_spines,
         right=_arc_length,
-        error=largest_difference,
-        unit="px",
-        tolerance=1e-6,
-        form="one number for each point, starting with 0",
+        answer=Answer("one number for each point, starting with 0", unit="px", tolerance=1e-6),
         mistakes=(
             (lambda p: np.arange(len(p)).astype(float), "This counts points; a diagonal step is 1.41 px long."),
             (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .task import Exercise, largest_difference
+from .task import Answer, Exercise
 
 
 def _records():
@@ -42,10 +42,7 @@ EXERCISES: dict[str, Exercise] = {
     "10.1": Exercise(
         cases=_records,
         right=_range,
-        error=largest_difference,
-        unit="",
-        tolerance=1e-9,
-        form="two numbers: smallest and largest",
+        answer=Answer("two numbers: smallest and largest", unit="", tolerance=1e-9),
         mistakes=(
             (
                 lambda s, k, i: (min(x[k][i] for x in s), max(x[k][i] for x in s)),
@@ -80,10 +77,7 @@ EXERCISES: dict[str, Exercise] = {
     "10.2": Exercise(
         cases=_arcs,
         right=lambda chord, radius: np.degrees(np.arcsin(chord / 2 / radius)),
-        error=largest_difference,
-        unit="degrees",
-        tolerance=1e-6,
-        form="one number",
+        answer=Answer("one number", unit="degrees", tolerance=1e-6),
         mistakes=(
             (lambda c, r: np.arcsin(c / 2 / r), "This is in radians; the paper's tables are in degrees."),
             (

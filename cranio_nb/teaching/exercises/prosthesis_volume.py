@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 from skimage.morphology import convex_hull_image
 
-from .task import Exercise, different_pixels, small_head
+from .task import Answer, Exercise, different_pixels, small_head
 
 _CORNERS = np.ones((3, 3), bool)  # pixels that touch at a corner belong together
 _SIDES = ndimage.generate_binary_structure(2, 1)
@@ -66,10 +66,7 @@ EXERCISES: dict[str, Exercise] = {
     "5.1": Exercise(
         cases=_curves,
         right=lambda outer, inner: np.concatenate([outer, inner[::-1]]),
-        error=_outline_error,
-        unit="mm2",
-        tolerance=0.01,
-        form="an array (n, 2) of (row, col)",
+        answer=Answer("an array (n, 2) of (row, col)", unit="mm2", tolerance=0.01, error=_outline_error),
         mistakes=(
             (
                 lambda o, i: np.concatenate([o, i]),
@@ -88,10 +85,7 @@ EXERCISES: dict[str, Exercise] = {
     "5.2": Exercise(
         cases=_regions,
         right=lambda region, bone: region & ~bone,
-        error=different_pixels,
-        unit="pixels",
-        tolerance=0.0,
-        form="a mask like the ones given",
+        answer=Answer("a mask like the ones given", unit="pixels", tolerance=0.0, error=different_pixels),
         mistakes=(
             (lambda r, b: r, "Bone is still in it: a prosthesis cannot be where the bone is."),
             (
@@ -107,10 +101,7 @@ EXERCISES: dict[str, Exercise] = {
     "5.3": Exercise(
         cases=_dented,
         right=_lost,
-        error=different_pixels,
-        unit="pixels",
-        tolerance=0.0,
-        form="a mask like the one given",
+        answer=Answer("a mask like the one given", unit="pixels", tolerance=0.0, error=different_pixels),
         mistakes=(
             (_with_cavity, "The brain's place is in it: drop the biggest region too."),
             (lambda b, m: _with_cavity(b, m, _SIDES), "The brain's place is in it: drop the biggest region too."),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from skimage.morphology import convex_hull_image
 
-from .task import Exercise, different_pixels, largest_difference
+from .task import Answer, Exercise, different_pixels, largest_difference
 
 _LONG = "The normal must have length 1: divide it by its length."
 
@@ -77,10 +77,9 @@ EXERCISES: dict[str, Exercise] = {
     "8.1": Exercise(
         cases=_pairs,
         right=_plane,
-        error=_plane_error,
-        unit="mm",
-        tolerance=0.2,
-        form="two arrays of 3 numbers: the unit normal and a point",
+        answer=Answer(
+            "two arrays of 3 numbers: the unit normal and a point", unit="mm", tolerance=0.2, error=_plane_error
+        ),
         mistakes=(
             (lambda a, b: ((a - b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a + b).mean(axis=0) / 2), _LONG),
@@ -121,10 +120,7 @@ EXERCISES: dict[str, Exercise] = {
     "8.2": Exercise(
         cases=_caps,
         right=_mean_depth,
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-6,
-        form="one number",
+        answer=Answer("one number", unit="mm", tolerance=1e-6),
         mistakes=(
             (lambda a, h: h, "This is the depth in the middle, the largest; wanted is the mean."),
             (
@@ -147,10 +143,7 @@ EXERCISES: dict[str, Exercise] = {
     "8.3": Exercise(
         cases=_open_rings,
         right=_lid,
-        error=different_pixels,
-        unit="pixels",
-        tolerance=0.0,
-        form="a mask like the ones given",
+        answer=Answer("a mask like the ones given", unit="pixels", tolerance=0.0, error=different_pixels),
         mistakes=(
             (
                 lambda b, i: convex_hull_image(b) & ~b,

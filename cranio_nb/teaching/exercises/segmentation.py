@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from scipy import ndimage
 
-from .task import Exercise, different_pixels, small_head
+from .task import Answer, Exercise, different_pixels, small_head
 
 
 def _largest(mask):
@@ -93,10 +93,7 @@ EXERCISES: dict[str, Exercise] = {
     "2.1": Exercise(
         cases=_parts,
         right=_largest,
-        error=_bool_pixels,
-        unit="voxels",
-        tolerance=0.0,
-        form="a bool mask like the one given",
+        answer=Answer("a bool mask like the one given", unit="voxels", tolerance=0.0, error=_bool_pixels),
         mistakes=(
             (lambda m: ndimage.label(m)[0] == 1, "Label 1 is the part that is met first, not the largest."),
             (
@@ -122,10 +119,7 @@ EXERCISES: dict[str, Exercise] = {
     "2.2": Exercise(
         cases=_rings,
         right=_fill_small,
-        error=_bool_pixels,
-        unit="pixels",
-        tolerance=0.0,
-        form="a bool mask like the one given",
+        answer=Answer("a bool mask like the one given", unit="pixels", tolerance=0.0, error=_bool_pixels),
         mistakes=(
             (lambda m, a: ndimage.binary_fill_holes(m), "This fills the brain's place as well: fill only small holes."),
             (lambda m, a: m, "No hole was filled."),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from skimage.measure import marching_cubes
 
-from .task import Exercise, largest_difference
+from .task import Answer, Exercise, largest_difference
 
 
 def _meshes():
@@ -34,10 +34,12 @@ EXERCISES: dict[str, Exercise] = {
     "6.1": Exercise(
         cases=_meshes,
         right=lambda v, f: _parts_of_volume(v, f).sum() / 6,
-        error=lambda a, b: largest_difference(a, b) / abs(float(b)),
-        unit="of the volume",
-        tolerance=1e-6,
-        form="one number",
+        answer=Answer(
+            "one number",
+            unit="of the volume",
+            tolerance=1e-6,
+            error=lambda a, b: largest_difference(a, b) / abs(float(b)),
+        ),
         mistakes=(
             (lambda v, f: _parts_of_volume(v, f).sum(), "Six times too big: a tetrahedron is a sixth of its box."),
             (lambda v, f: _parts_of_volume(v, f).sum() / 3, "Twice too much: a tetrahedron is a sixth of its box."),
@@ -65,10 +67,7 @@ EXERCISES: dict[str, Exercise] = {
     "6.2": Exercise(
         cases=_voxel_places,
         right=lambda index, spacing: index * spacing,
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-9,
-        form="an array like the one given",
+        answer=Answer("an array like the one given", unit="mm", tolerance=1e-9),
         mistakes=(
             (lambda i, s: i, "These are still voxels: 23 of them are not 23 mm."),
             (lambda i, s: i * s[::-1], "The spacing goes with (plane, row, col); do not turn it round."),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -12,42 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 
 if TYPE_CHECKING:
     from data_synth import Case
-
-
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Exercise:
-    """One exercise.
-
-    Parameters
-    ----------
-    cases : callable
-        () -> list of argument tuples; each is worth a point.
-    right : callable
-        The answer.
-    error : callable
-        (answer, right answer) -> how far apart they are, in `unit`.
-    unit : str
-    tolerance : float
-        Largest error that is right.
-    form : str
-        What an answer looks like, for those that cannot be compared.
-    mistakes : tuple of (callable, str)
-        Typical wrong answers, and what to say to whoever gives them.
-    hints : tuple of str
-        From a push to nearly all.
-    praise : str
-        What a right answer has shown.
-    """
-
-    cases: Callable[[], list[tuple[Any, ...]]]
-    right: Callable[..., Any]
-    error: Callable[[Any, Any], float]
-    unit: str
-    tolerance: float
-    form: str
-    mistakes: tuple[tuple[Callable[..., Any], str], ...]
-    hints: tuple[str, ...]
-    praise: str
 
 
 @cache
@@ -140,3 +104,53 @@ def degrees_apart(answer: ArrayLike, right: ArrayLike) -> float:
     # a line has no sign, hence the absolute value
     cosine = abs(a @ b) / np.linalg.norm(a) / np.linalg.norm(b)
     return float(np.degrees(np.arccos(min(cosine, 1.0))))
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What an answer looks like, and when it is right.
+
+    Parameters
+    ----------
+    form : str
+        In words, for answers that cannot be compared.
+    unit : str
+    tolerance : float
+        Largest error that is right, in `unit`.
+    error : callable
+        (answer, right answer) -> how far apart they are, in `unit`.
+    """
+
+    form: str
+    _: KW_ONLY
+    unit: str
+    tolerance: float
+    error: Callable[[Any, Any], float] = largest_difference
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Exercise:
+    """One exercise.
+
+    Parameters
+    ----------
+    cases : callable
+        () -> list of argument tuples; each is worth a point.
+    right : callable
+        The answer.
+    answer : Answer
+        What one looks like, and how near to `right` it has to be.
+    mistakes : tuple of (callable, str)
+        Typical wrong answers, and what to say to whoever gives them.
+    hints : tuple of str
+        From a push to nearly all.
+    praise : str
+        What a right answer has shown.
+    """
+
+    cases: Callable[[], list[tuple[Any, ...]]]
+    right: Callable[..., Any]
+    answer: Answer
+    mistakes: tuple[tuple[Callable[..., Any], str], ...]
+    hints: tuple[str, ...]
+    praise: str

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .task import Exercise, largest_difference
+from .task import Answer, Exercise, largest_difference
 
 
 def _sizes():
@@ -66,10 +66,7 @@ EXERCISES: dict[str, Exercise] = {
     "9.1": Exercise(
         cases=_sizes,
         right=_differences,
-        error=_up_to_sign,
-        unit="",
-        tolerance=1e-9,
-        form="a matrix of n - order rows and n columns",
+        answer=Answer("a matrix of n - order rows and n columns", unit="", tolerance=1e-9, error=_up_to_sign),
         mistakes=(
             (
                 lambda n, order: np.diff(np.eye(n), order),
@@ -99,10 +96,7 @@ EXERCISES: dict[str, Exercise] = {
     "9.2": Exercise(
         cases=_gaps,
         right=_bridge,
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-4,
-        form="one value for every value of f",
+        answer=Answer("one value for every value of f", unit="mm", tolerance=1e-4),
         mistakes=(
             (
                 lambda f, known, order, strength: _bridge(f, known, order, strength, held=False, pulled=False),
@@ -144,10 +138,7 @@ EXERCISES: dict[str, Exercise] = {
     "9.3": Exercise(
         cases=_arcs,
         right=_rational,
-        error=largest_difference,
-        unit="mm",
-        tolerance=1e-6,
-        form="a point (x, y) for every t",
+        answer=Answer("a point (x, y) for every t", unit="mm", tolerance=1e-6),
         mistakes=(
             (
                 lambda points, weights, t: _bernstein(t) @ points,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .task import Exercise, largest_difference, small_head
+from .task import Answer, Exercise, small_head
 
 
 def _patches():
@@ -24,10 +24,7 @@ EXERCISES: dict[str, Exercise] = {
     "0.1": Exercise(
         cases=_patches,
         right=lambda mask, spacing: mask.sum() * np.prod(spacing) / 1000,
-        error=largest_difference,
-        unit="cm3",
-        tolerance=0.01,
-        form="one number",
+        answer=Answer("one number", unit="cm3", tolerance=0.01),
         mistakes=(
             (lambda m, s: m.sum(), "This counts voxels. Each voxel has a volume: the product of its three spacings."),
             (lambda m, s: m.sum() * np.prod(s), "This is in mm3; 1 cm3 is 1000 mm3."),
@@ -52,10 +49,7 @@ EXERCISES: dict[str, Exercise] = {
     "0.2": Exercise(
         cases=_pairs,
         right=lambda a, b: 2 * (a & b).sum() / (a.sum() + b.sum()),
-        error=largest_difference,
-        unit="",
-        tolerance=1e-6,
-        form="one number from 0 to 1",
+        answer=Answer("one number from 0 to 1", unit="", tolerance=1e-6),
         mistakes=(
             (lambda a, b: (a & b).sum() / (a | b).sum(), "This is Jaccard's index: it divides by the union."),
             (

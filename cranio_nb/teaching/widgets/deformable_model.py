@@ -139,7 +139,7 @@ class Scene:
         Parameters
         ----------
         points : array_like, shape (..., 2)
-            Chord (along, out), px.
+            As `ChordFrame.to_chord` returns them.
 
         Returns
         -------

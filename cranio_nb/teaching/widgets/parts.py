@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
 from ...drawing.figures import colour_scale
-from ...drawing.palette import GREY, SKY, side_letter
+from ...drawing.palette import GREY, SKY
 from ...drawing.pixels import RGB, Window
 from ...drawing.shading import view_axes
 from ...mesh import Mesh
@@ -28,7 +28,6 @@ HU_RANGE = (-1100.0, 2500.0)
 
 _COLOURS = (colour_scale(1.0).to_rgba(np.linspace(0, 1, 256), bytes=True)[:, :3]).astype(np.uint8)
 _MARGIN = 0.06  # around what a window shows, of its larger extent: room for letters
-_LETTER = 12  # px from an edge to the middle of its letter
 
 Histogram = tuple[NDArray, NDArray]
 
@@ -53,35 +52,6 @@ def left_window(shown: NDArray[np.bool_], width: int = LEFT) -> Window:
     return Window.around((0, 0, width, HEIGHT), low - margin, high + margin)
 
 
-def draw_sides(
-    canvas: Canvas,
-    box: tuple[float, float, float, float],
-    right: ArrayLike = (1, 0, 0),
-    down: ArrayLike = (0, 1, 0),
-) -> None:
-    """Write the letters of the patient's sides at the edges of a picture of a head.
-
-    Parameters
-    ----------
-    canvas : Canvas
-    box : tuple of float
-        x, y, width and height of the picture, px.
-    right, down : array_like, shape (3,)
-        Where they lead in the head, LPS; by default those of an axial slice.
-    """
-    x, y, width, height = box
-    right, down = np.asarray(right, float), np.asarray(down, float)
-    middle = (x + width / 2, y + height / 2)
-    places = (
-        ((x + width - _LETTER, middle[1]), right),
-        ((x + _LETTER, middle[1]), -right),
-        ((middle[0], y + height - _LETTER), down),
-        ((middle[0], y + _LETTER), -down),
-    )
-    for at, way in places:
-        canvas.text(*at, side_letter(way), size=14, anchor="mm", halo=True)
-
-
 def annotate_slice(canvas: Canvas, window: Window, grid: Volume, plane: int) -> None:
     """Write scale bar, sides of the patient and the number of the slice over an axial slice.
 
@@ -98,7 +68,7 @@ def annotate_slice(canvas: Canvas, window: Window, grid: Volume, plane: int) -> 
     px = float(grid.spacing[2])
     mm = round_length(0.2 * width / window.zoom * px)
     canvas.scale_bar(x + 14, y + height - 14, mm / px * window.zoom, f"{mm:g} mm")
-    draw_sides(canvas, window.box)
+    canvas.sides(window.box)
     canvas.text(x + width - 12, y + height - 14, f"slice {plane}", anchor="rs", halo=True)
 
 
@@ -243,5 +213,5 @@ def put_view(
     canvas.place(rgb, *corner)
     length = round_length(0.3 * width * px)
     canvas.scale_bar(x + 14, y + height - 14, length / px, f"{length:g} mm")
-    draw_sides(canvas, box, *view_axes(towards)[:2])
+    canvas.sides(box, *view_axes(towards)[:2])
     return corner

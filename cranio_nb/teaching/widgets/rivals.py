@@ -36,7 +36,6 @@ from .parts import (
     annotate_slice,
     coloured,
     draw_colour_scale,
-    draw_sides,
     left_window,
     put_view,
 )
@@ -241,7 +240,7 @@ def _mirror_view(
     left, top = _HALF + 20, 80
     canvas.place(coloured(residual[np.ix_(rows, rows)], _TOP), left, top)
     canvas.text(left, top - 14, "the vault from above: residual (mm)")
-    draw_sides(canvas, (left, top, side, side))
+    canvas.sides((left, top, side, side))
     draw_colour_scale(canvas, (left, top + side + 16), side, _TOP)
     known = residual[np.isfinite(residual)]
     line = "Turned by {turn_deg:g} and leaning by {lean_deg:g} degrees, shifted by {shift_mm:g} mm: ".format(**move)
@@ -254,13 +253,11 @@ def _mirrored_slice(bone: Volume, window: Window, mirror: SymmetryPlane, plane: 
     """A slice: bone, its mirror image, what both share, and the plane."""
     # the mirror image of the slice: each pixel shows the voxel that its mirrored place falls on
     mask = bone.voxels[plane]
-    pixels = np.stack([np.full(mask.shape, plane), *np.indices(mask.shape)], axis=-1)
-    world = bone.to_world(pixels.reshape(-1, 3))
-    image = bone.at(mirror.mirror(world), outside=False).reshape(mask.shape)
+    image = bone.at_index(_over(mask.shape, _mirrored_index(bone, mirror, plane)), outside=False)
     canvas = Canvas(_HALF, HEIGHT)
     canvas.show(tinted(tinted(tinted(plain(mask.shape), image, SKY), mask, ORANGE), mask & image, BONE), window)
     # the plane, where the side changes along a row
-    side = mirror.distance(world).reshape(mask.shape) > 0
+    side = _over(mask.shape, mirror.distance(bone.to_world(_corners(plane)))) > 0
     rows = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
     if len(rows):
         canvas.line(window.px(np.column_stack([rows, side[rows].argmax(axis=1) - 0.5])), BLACK, width=1.5, dash=(8, 5))
@@ -268,3 +265,22 @@ def _mirrored_slice(bone: Volume, window: Window, mirror: SymmetryPlane, plane: 
     entries = [(BONE, "area", "both"), (ORANGE, "area", "bone"), (SKY, "area", "mirror")]
     canvas.legend(_HALF / 2 - 46, HEIGHT / 2 - 40, [*entries, (BLACK, "dash", "plane")])  # within the ring of bone
     return canvas
+
+
+def _corners(plane: int) -> NDArray[np.float64]:
+    """The first voxel of a slice and its neighbours in the next row and the next column, shape (3, 3)."""
+    return np.array([[plane, 0, 0], [plane, 1, 0], [plane, 0, 1]], float)
+
+
+def _mirrored_index(bone: Volume, mirror: SymmetryPlane, plane: int) -> NDArray[np.float64]:
+    """Voxel indices of the mirrored places of `_corners`, shape (3, 3)."""
+    return bone.to_voxel(mirror.mirror(bone.to_world(_corners(plane))))
+
+
+def _over(shape: tuple[int, ...], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """An affine function of row and column at every pixel of a slice, from its values at `_corners`."""
+    first, row, col = corners
+    rows, cols = np.arange(shape[0])[:, None], np.arange(shape[1])
+    if first.ndim:
+        rows, cols = rows[..., None], cols[:, None]
+    return np.asarray(first + rows * (row - first) + cols * (col - first))

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import SHAPE, codes, edit, head, refusal, save, series
+from dicom_series import SHAPE, codes, head, refusal, save, series
 from pydicom.uid import generate_uid
 
 from cranio_nb.readers import read_ct
 from cranio_nb.readers.dicom.continuation import agree
+from data_synth.fault_edits import set_elements
 
 TURN = 0.01
 TURNED = [np.cos(TURN), np.sin(TURN), 0, -np.sin(TURN), np.cos(TURN), 0]
@@ -28,20 +29,20 @@ LOSSES = {
 @pytest.mark.parametrize("end", ["top", "bottom"])
 def test_a_lost_end_is_refused_however_small(name: str, count: int, end: str, tmp_path: Path) -> None:
     datasets = series(head())
-    edit(slice(-count, None) if end == "top" else slice(0, count), **LOSSES[name])(datasets)
+    set_elements(slice(-count, None) if end == "top" else slice(0, count), **LOSSES[name])(datasets)
     assert refusal(save(tmp_path / "scan", datasets)).code == "MissingSlices"
 
 
 @pytest.mark.parametrize("count", [4, 12])
 def test_a_scan_in_two_series_is_refused(count: int, tmp_path: Path) -> None:
     datasets = series(head())
-    edit(slice(-count, None), SeriesInstanceUID=generate_uid())(datasets)
+    set_elements(slice(-count, None), SeriesInstanceUID=generate_uid())(datasets)
     assert refusal(save(tmp_path / "scan", datasets)).code == "AmbiguousSeries"
 
 
 def test_every_other_slice_in_another_series_is_refused(tmp_path: Path) -> None:
     datasets = series(head())
-    edit(slice(0, None, 2), SeriesInstanceUID=generate_uid())(datasets)
+    set_elements(slice(0, None, 2), SeriesInstanceUID=generate_uid())(datasets)
     assert refusal(save(tmp_path / "scan", datasets)).code == "AmbiguousSeries"
 
 
@@ -67,7 +68,7 @@ def test_a_cut_slice_of_joined_series_is_missed(tmp_path: Path) -> None:
 def test_other_reconstructions_of_the_same_places_do_not_matter(tmp_path: Path) -> None:
     datasets = series(head())
     twins = copy.deepcopy(datasets)
-    edit(slice(None), SeriesInstanceUID=generate_uid(), ConvolutionKernel="H70s", SeriesNumber=3)(twins)
+    set_elements(slice(None), SeriesInstanceUID=generate_uid(), ConvolutionKernel="H70s", SeriesNumber=3)(twins)
     for ds in twins:
         ds.SOPInstanceUID = generate_uid()
     volume, _ = read_ct(save(tmp_path / "scan", datasets + twins))

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import edit, head, read_folder, save, series
+from dicom_series import head, read_folder, save, series
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers.dicom.duplicates import keep_one_per_position
+from data_synth.fault_edits import set_elements
 
 SMALL = (9, 22, 26)
 
@@ -31,7 +32,7 @@ def test_exact_copies_are_dropped_and_counted(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("name", "value"), [("AcquisitionNumber", 2), ("ConvolutionKernel", "H70h")])
 def test_two_scans_at_one_place_are_refused_with_their_difference(name: str, value: object, tmp_path: Path) -> None:
     first, second = series(head(SMALL)), series(head(SMALL) + 1)
-    edit(slice(None), **{name: value, "SeriesInstanceUID": first[0].SeriesInstanceUID})(second)
+    set_elements(slice(None), **{name: value, "SeriesInstanceUID": first[0].SeriesInstanceUID})(second)
     with pytest.raises(InputRefused) as caught:
         keep_one_per_position(read_folder(save(tmp_path / "scan", [*first, *second])))
     assert caught.value.code == "AmbiguousSeries"
@@ -41,7 +42,7 @@ def test_two_scans_at_one_place_are_refused_with_their_difference(name: str, val
 
 def test_slices_without_pixels_leave_a_gap_only_where_that_is_allowed(tmp_path: Path) -> None:
     datasets = series(head(SMALL))
-    edit(4, PixelData=None)(datasets)
+    set_elements(4, PixelData=None)(datasets)
     headers = read_folder(save(tmp_path / "scan", datasets))
     with pytest.raises(InputRefused) as caught:
         keep_one_per_position(headers)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import edit, head, patch, refusal, save, series
+from dicom_series import head, patch, refusal, save, series
 from pydicom.encaps import encapsulate, get_frame
 from pydicom.uid import DeflatedExplicitVRLittleEndian, RLELossless
 
@@ -16,6 +16,7 @@ from cranio_nb.readers.dicom.inflated import open_dataset
 from cranio_nb.readers.dicom.parse import parse_file
 from cranio_nb.readers.dicom.pixel_data import read_stack
 from cranio_nb.readers.dicom.slice_header import read_headers
+from data_synth.fault_edits import set_elements
 
 SMALL = (9, 22, 26)
 
@@ -45,7 +46,7 @@ def test_rubbish_above_the_stored_bits_is_ignored(signed: bool, tmp_path: Path) 
 @pytest.mark.parametrize("which", [slice(None), slice(5, 6)])
 def test_numbers_that_need_more_bits_than_declared_are_refused(signed: bool, which: slice, tmp_path: Path) -> None:
     datasets = series(head(SMALL), bits=12, signed=signed, intercept=0 if signed else -1024)
-    edit(which, BitsStored=10, HighBit=9)(datasets)
+    set_elements(which, BitsStored=10, HighBit=9)(datasets)
     assert refusal(save(tmp_path / "scan", datasets)).code == "CorruptPixelData"
 
 
@@ -63,7 +64,7 @@ def test_some_bytes_behind_the_pixels_are_left_with_a_warning(extra: int, tmp_pa
 @pytest.mark.parametrize("change", [{"Rows": SMALL[1] - 1}, {"Columns": SMALL[2] - 1}, {"Columns": SMALL[2] - 2}])
 def test_a_row_or_a_column_too_few_is_refused(change: dict[str, int], tmp_path: Path) -> None:
     datasets = series(head(SMALL))
-    edit(slice(None), **change)(datasets)
+    set_elements(slice(None), **change)(datasets)
     assert refusal(save(tmp_path / "scan", datasets)).code == "CorruptPixelData"
 
 

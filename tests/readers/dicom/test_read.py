@@ -6,21 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import (
-    ORIGIN,
-    SHAPE,
-    SPACING,
-    STEP,
-    assert_same_places,
-    edit,
-    head,
-    save,
-    series,
-    truth,
-)
+from dicom_series import ORIGIN, SHAPE, SPACING, STEP, assert_same_places, head, save, save_changed, series, truth
 
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import same_grid
+from data_synth.fault_edits import set_elements
 
 SMALL = (9, 22, 26)
 
@@ -84,7 +74,7 @@ def test_names_numbers_and_subfolders_do_not_matter(tmp_path: Path) -> None:
     datasets = series(head())
     shuffled = datasets[:]
     random.Random(5).shuffle(shuffled)
-    edit(slice(None), InstanceNumber=None)(shuffled)
+    set_elements(slice(None), InstanceNumber=None)(shuffled)
     save(tmp_path / "Schädel 頭 череп" / ("deep" * 20) / "c", shuffled[:10])
     save(tmp_path / "Schädel 頭 череп", shuffled[10:])
     for path in list(tmp_path.rglob("*.dcm")):
@@ -110,9 +100,7 @@ def test_two_readings_are_the_same(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("stated", "warned"), [(12.0, True), (-12.0, True), (0.0, False), (0.5, False)])
 def test_a_tilt_that_only_the_tag_states_is_a_warning(stated: float, warned: bool, tmp_path: Path) -> None:
-    datasets = series(head())
-    edit(slice(None), GantryDetectorTilt=stated)(datasets)
-    _, report = read_ct(save(tmp_path / "scan", datasets))
+    _, report = read_ct(save_changed(tmp_path, set_elements(slice(None), GantryDetectorTilt=stated)))
     assert ("TiltUnclear" in {f.code for f in report.findings}) == warned
 
 
@@ -120,6 +108,6 @@ def test_a_tilt_that_the_positions_show_is_corrected_without_a_warning(tmp_path:
     lean = np.radians(12.0)
     tilted = (1.0, 0.0, 0.0, 0.0, np.cos(lean), -np.sin(lean))
     datasets = series(head(), orientation=tilted, direction=(0, 0, 1))
-    edit(slice(None), GantryDetectorTilt=12.0)(datasets)
+    set_elements(slice(None), GantryDetectorTilt=12.0)(datasets)
     _, report = read_ct(save(tmp_path / "scan", datasets))
     assert [f.code for f in report.findings if f.severity != "info"] == ["GantryTilt"]

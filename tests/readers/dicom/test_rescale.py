@@ -5,13 +5,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from dicom_series import codes, edit, head, save, series, set_pixels
+from dicom_series import codes, head, save, save_changed, series, set_pixels
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.readers import read_ct
 from cranio_nb.readers.dicom.rescale import apply_rescale, check_levels, check_rescale, check_unscaled
+from data_synth.fault_edits import set_elements
 
 SMALL = (9, 22, 26)
 
@@ -98,7 +99,7 @@ def test_padding_becomes_air_with_its_tag_and_without(tmp_path: Path) -> None:
     hu = head()
     hu[:, :6, :6] = -2000
     named = series(hu, intercept=0, signed=True)
-    edit(EVERY, PixelPaddingValue=-2000)(named)
+    set_elements(EVERY, PixelPaddingValue=-2000)(named)
     for folder, datasets, code in (("a", named, "Padding"), ("b", series(hu, intercept=-3000), "PaddingWithoutTag")):
         volume, report = read_ct(save(tmp_path / folder, datasets))
         assert code in codes(report)
@@ -106,9 +107,7 @@ def test_padding_becomes_air_with_its_tag_and_without(tmp_path: Path) -> None:
 
 
 def test_padding_value_within_the_head_is_ignored(tmp_path: Path) -> None:
-    datasets = series(head())
-    edit(EVERY, PixelPaddingValue=1024 + 900)(datasets)
-    volume, _ = read_ct(save(tmp_path / "scan", datasets))
+    volume, _ = read_ct(save_changed(tmp_path, set_elements(EVERY, PixelPaddingValue=1024 + 900)))
     np.testing.assert_array_equal(volume.voxels, head())
 
 

@@ -5,12 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import codes, edit, head, refusal, save, series
+from dicom_series import codes, head, refusal, save, series
 from pydicom.dataset import Dataset, FileMetaDataset
 from pydicom.uid import ExplicitVRLittleEndian, ImplicitVRLittleEndian
 
 from cranio_nb.readers import read_ct
 from cranio_nb.readers.dicom import scan
+from data_synth.fault_edits import set_elements
 
 DOSE_REPORT = "1.2.840.10008.5.1.4.1.1.88.67"
 
@@ -103,5 +104,5 @@ def test_frames_are_counted_over_the_folder(tmp_path: Path, monkeypatch: pytest.
 
 def test_promised_frames_without_bytes_cost_nothing(tmp_path: Path) -> None:
     datasets = series(head())
-    edit(slice(None), NumberOfFrames=4000, PixelData=b"\0\0", Rows=1, Columns=1)(datasets)
+    set_elements(slice(None), NumberOfFrames=4000, PixelData=b"\0\0", Rows=1, Columns=1)(datasets)
     assert refusal(save(tmp_path / "scan", datasets)).code == "CorruptPixelData"

@@ -4,9 +4,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from dicom_series import STEP, drop, head, refusal, save, series
+from dicom_series import STEP, head, refusal, save, series
 
 from cranio_nb.readers import read_ct
+from data_synth.fault_edits import drop
 
 
 def test_slices_too_far_apart_are_refused(tmp_path: Path) -> None:

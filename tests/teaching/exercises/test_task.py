@@ -13,7 +13,7 @@ from cranio_nb.teaching.exercises.task import Exercise, degrees_apart, different
 def test_the_right_answer_to_every_case_has_no_error(name):
     task = EXERCISES[name]
     assert len(task.cases()) == 3 and len(task.hints) == 3
-    assert all(task.error(task.right(*case), task.right(*case)) <= 1e-9 for case in task.cases())
+    assert all(task.answer.error(task.right(*case), task.right(*case)) <= 1e-9 for case in task.cases())
 
 
 def test_an_exercise_is_made_by_keyword_and_stays_as_it_is():
@@ -21,7 +21,7 @@ def test_an_exercise_is_made_by_keyword_and_stays_as_it_is():
     with pytest.raises(TypeError):
         Exercise(*(getattr(task, field.name) for field in dataclasses.fields(task)))
     with pytest.raises(dataclasses.FrozenInstanceError):
-        task.unit = "mm"
+        task.praise = "well done"
 
 
 @pytest.mark.parametrize("turn", [0.0, 12.5, 60.0, 90.0])

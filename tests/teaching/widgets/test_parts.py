@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from cranio_nb.drawing.canvas import Canvas
-from cranio_nb.drawing.shading import view_axes
 from cranio_nb.mesh import Mesh
 from cranio_nb.teaching.widgets import parts
 
@@ -29,14 +28,6 @@ def test_a_pixel_fits_a_ball_of_any_direction(towards):
     points = rng.normal(size=(5000, 3))
     ball = Mesh(10 * points / np.linalg.norm(points, axis=1, keepdims=True), np.zeros((0, 3), int))
     assert parts.pixel_to_fit(ball, towards, 100) == pytest.approx(0.2, rel=0.01)
-
-
-def test_the_letters_are_those_of_the_view():
-    shown, wanted = Canvas(100, 80), Canvas(100, 80)
-    parts.draw_sides(shown, (0, 0, 100, 80), *view_axes((1, 0, 0))[:2])  # from the left: the face is at the left
-    for at, letter in (((88, 40), "P"), ((12, 40), "A"), ((50, 68), "I"), ((50, 12), "S")):
-        wanted.text(*at, letter, size=14, anchor="mm", halo=True)
-    assert (shown.array() == wanted.array()).all()
 
 
 def test_the_window_holds_what_is_shown_in_any_slice():

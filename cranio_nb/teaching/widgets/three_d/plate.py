@@ -22,7 +22,7 @@ from ....vault import radius_measurement, symmetry
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from ..parts import HEIGHT, WIDTH, coloured, draw_colour_scale, draw_sides
+from ..parts import HEIGHT, WIDTH, coloured, draw_colour_scale
 from .scene import Array, Scene, error_line, make_scene, thin_rays
 
 _EVERY = 3  # rays
@@ -119,7 +119,7 @@ def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_], axes: Array) 
     # the rows of the map count upwards in the head: turned round, it is seen from outside
     canvas.text(20, 66, "plate to bone (mm), the hole outlined")
     canvas.place(rgb[::-1], 20, 80)
-    draw_sides(canvas, (20, 80, _MAP, _MAP), axes[0], -axes[1])
+    canvas.sides((20, 80, _MAP, _MAP), axes[0], -axes[1])
     draw_colour_scale(canvas, (20, 96 + _MAP), _MAP, _TOP)
 
 

@@ -24,7 +24,7 @@ from ....vault.ray_grid import RadiusMap
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from ..parts import HEIGHT, WIDTH, draw_sides
+from ..parts import HEIGHT, WIDTH
 from .scene import Array, Scene, error_line, make_scene
 
 MAX_STEPS = 40
@@ -139,17 +139,19 @@ def _draw_net(canvas: Canvas, way: Way, one: Sheet, axes: Array) -> None:
     zoom, middle = (_TOP - 50) / np.ptp(every, axis=0).max(), (every.min(axis=0) + every.max(axis=0)) / 2
     place = lambda points: (flat(points) - middle) * zoom + np.array([_SIDE, _TOP]) / 2  # noqa: E731
     inset = Canvas(_SIDE, _TOP)
-    inset.dots(place(springs), BONE, radius=1.5)
+    inset.dots(place(springs[::2]), BONE, radius=1.5)  # every other one: they are many, and hold still
     # lines of the sheet twice in each span, then its control net
     (n, m), fine = one.spans, 48
-    for v in np.linspace(0, n, 2 * n + 1):
-        inset.line(place(one.at(np.full(fine, v), np.linspace(0, m, fine))), SKY, width=1.5)
-    for u in np.linspace(0, m, 2 * m + 1):
-        inset.line(place(one.at(np.linspace(0, n, fine), np.full(fine, u))), SKY, width=1.5)
+    v, u = np.linspace(0, n, 2 * n + 1), np.linspace(0, m, 2 * m + 1)
+    across = np.repeat(v, fine), np.tile(np.linspace(0, m, fine), len(v))
+    along = np.tile(np.linspace(0, n, fine), len(u)), np.repeat(u, fine)
+    lines = one.at(*(np.concatenate(ways) for ways in zip(across, along, strict=True)))
+    for line in lines.reshape(-1, fine, 3):
+        inset.line(place(line), SKY, width=1.5)
     for points in (*one.control, *one.control.swapaxes(0, 1)):
         inset.line(place(points), ORANGE, width=1)
     inset.dots(place(one.control.reshape(-1, 3)), ORANGE, radius=3, edge=BLACK)
-    draw_sides(inset, (0, 0, _SIDE, _TOP), axes[0], -axes[1])
+    inset.sides((0, 0, _SIDE, _TOP), axes[0], -axes[1])
     canvas.inlay(inset, 0, 0)
 
 

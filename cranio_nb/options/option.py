@@ -1,21 +1,13 @@
-"""An option: what it means, which values it may have and in which unit, declared once, beside its default.
-
-A method declares its options where it takes them; all else reads that: the check, the help, the table in the docs, the
-sliders of the panels and the ranges of a study (`methods.catalogue.options_of`)::
-
-    def pieces(bone, openings, *, grow_px: Annotated[int, Option("How far the sheet grows.", 0, 20, "voxels")] = 2):
-"""
+"""An option: what it means, which values it may have and in which unit."""
 
 from __future__ import annotations
 
-import inspect
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import inf
-from typing import Annotated, Any, get_args, get_origin
+from typing import Any
 
-from .errors import InputRefused
+from ..errors import InputRefused
 
 _LONG = 10**15  # from here a whole number is shown by its first digits
 
@@ -42,7 +34,7 @@ class Option:
 
     Examples
     --------
-    >>> from cranio_nb.option import Option
+    >>> from cranio_nb.options import Option
     >>> reach = Option("Bone that is fitted.", 1, 40, "mm", default=10.0)
     >>> reach.wanted, reach.check("reach", 12.5)
     ('a number from 1 to 40 mm', 12.5)
@@ -165,50 +157,6 @@ class Option:
 
 THRESHOLD = Option("Lowest HU of bone: above soft tissue, below metal.", 50, 3000, "HU", default=400.0)
 """Of bone in a CT: it stands here because a stage and the command line share it."""
-
-
-def declared(function: Callable[..., Any]) -> dict[str, Option]:
-    """The options that a function declares: its keyword-only parameters with their defaults.
-
-    Parameters
-    ----------
-    function : callable
-        Options without a declaration get one that says nothing but their kind.
-
-    Returns
-    -------
-    dict of str to Option
-
-    Raises
-    ------
-    InputRefused
-        ``BadMethod`` where the text of an annotation that holds an `Option` names what its module does not know.
-
-    Examples
-    --------
-    >>> from typing import Annotated
-    >>> from cranio_nb.option import Option, declared
-    >>> def grow(bone, *, px: Annotated[int, Option("How far.", 0, 20, "px")] = 2, round=True): ...
-    >>> declared(grow)["px"].limits, declared(grow)["round"].wanted
-    ('0 to 20 px', 'true or false')
-    """
-    parameters = inspect.signature(function).parameters.values()
-    return {
-        p.name: replace(_declaration(p, function), default=p.default) for p in parameters if p.kind is p.KEYWORD_ONLY
-    }
-
-
-def _declaration(parameter: inspect.Parameter, function: Callable[..., Any]) -> Option:
-    """The option in the annotation of a parameter; an empty one where there is none."""
-    hint = parameter.annotation
-    if isinstance(hint, str) and Option.__name__ in hint:  # text, where annotations are not run
-        try:
-            hint = eval(hint, getattr(inspect.unwrap(function), "__globals__", {}))
-        except NameError as error:
-            message = f"The declaration of the option {parameter.name} cannot be read: {error}."
-            raise InputRefused("BadMethod", message, "Import what it names at the top of its module.") from None
-    parts = get_args(hint)[1:] if get_origin(hint) is Annotated else ()
-    return next((part for part in parts if isinstance(part, Option)), Option(""))
 
 
 def _is_plain(text: str) -> bool:

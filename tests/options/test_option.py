@@ -1,12 +1,11 @@
 """What is declared of an option: its words, and which values it lets pass."""
 
 from math import inf, nan
-from typing import Annotated
 
 import pytest
 
 from cranio_nb.errors import InputRefused
-from cranio_nb.option import Option, declared
+from cranio_nb.options import Option
 
 
 @pytest.mark.parametrize(
@@ -55,24 +54,3 @@ def test_a_refusal_repeats_no_words_of_the_user():
 
 def test_a_slider_looks_through_the_usual_part():
     assert Option("", 0, 9).span == (0, 9) and Option("", 0, 9, usual=(1, 2)).span == (1, 2)
-
-
-def as_objects(one, *, n: Annotated[int, Option("n", 0, 9, "px")] = 2, free=1.5):
-    pass
-
-
-def as_text(one, *, n: 'Annotated[int, Option("n", 0, 9, "px")]' = 2, free: "Unknown" = 1.5):  # noqa: F821
-    pass
-
-
-@pytest.mark.parametrize("function", [as_objects, as_text])
-def test_options_are_read_off_the_parameters(function):
-    assert declared(function) == {"n": Option("n", 0, 9, "px", default=2), "free": Option("", default=1.5)}
-
-
-def test_a_declaration_that_cannot_be_read_is_not_passed_over():
-    def lost(one, *, n: "Annotated[Nowhere, Option('n', 0, 9)]" = 2):  # noqa: F821
-        pass
-
-    with pytest.raises(InputRefused, match="Nowhere"):
-        declared(lost)
