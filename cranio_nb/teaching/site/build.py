@@ -10,6 +10,7 @@ import shutil
 import tempfile
 from collections.abc import Callable
 from importlib.util import find_spec
+from io import StringIO
 from pathlib import Path
 from typing import Any
 
@@ -128,14 +129,13 @@ def run_sphinx(source: Path, out: Path, trees: Path) -> None:
     InputRefused
         ``BadPage``, with Sphinx's first warnings: a link that leads nowhere, a page that nothing leads to.
     """
-    from io import StringIO
-
     from sphinx.application import Sphinx
+    from sphinx.util.docutils import docutils_namespace, patch_docutils
 
     said = StringIO()
-    static = {"html_static_path": [str(source / _FRONT)]}
-    app = Sphinx(source, None, out, trees, "html", _CONFIG | static, status=None, warning=said, parallel=1)
-    app.build()
+    config = _CONFIG | {"html_static_path": [str(source / _FRONT)]}
+    with patch_docutils(), docutils_namespace():  # else a second site in one process hears of the first
+        Sphinx(source, None, out, trees, "html", config, status=None, warning=said).build()
     if said.getvalue():
         raise InputRefused("BadPage", f"Sphinx warns: {said.getvalue()[:1000]}", "Mend the page.")
     # for machines that build upon each other's docs, and for the next build: nothing a reader needs
