@@ -20,6 +20,7 @@ _NEEDED = tuple(
 _OPTIONAL = {
     "lab": ("jupyterlab", "anywidget", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
     "view": ("pyvista", "vtk", "trame-pyvista", "aiohttp"),
+    "site": ("sphinx", "myst-nb", "numpydoc", "furo", "sphinx-revealjs"),
 }
 _MIN_MEMORY_GB = 2.0
 _PLOT = "from matplotlib.backends.backend_agg import FigureCanvasAgg as C; from matplotlib.figure import Figure as F; "

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from html_page import Page
 from PIL import Image
-from small_site import NAME, write_project
+from small_site import NAME, few_views, write_project
 
 from cranio_nb.teaching.site import build, pages
 
@@ -22,6 +22,7 @@ def site(tmp_path_factory):
         pytest.skip('the extras "lab" and "site" are not installed')
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(pages, "API", {})
+        few_views(patched)
         project = write_project(tmp_path_factory.mktemp("project"))
         return build.build_site(project, tmp_path_factory.mktemp("home") / "site").parent
 

@@ -6,6 +6,7 @@ import nbformat
 from nbformat.v4 import new_code_cell, new_markdown_cell, new_notebook, new_output
 
 from cranio_nb.teaching.lesson_text import METADATA, cell_ids
+from cranio_nb.teaching.site import lesson_page, turntable
 from cranio_nb.teaching.site.pages import TEXTS
 
 NAME = "00_small"
@@ -86,6 +87,11 @@ def base64(data):
     import base64 as library
 
     return library.b64encode(data).decode()
+
+
+def few_views(patched):
+    """Scenes seen from all round but from one height: a quarter of their pictures."""
+    patched.setattr(lesson_page, "all_round", lambda panel: turntable.all_round(panel)[:1])
 
 
 def write_project(folder):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import shutil
 import tempfile
 from collections.abc import Callable
+from importlib.metadata import version
 from importlib.util import find_spec
 from io import StringIO
 from pathlib import Path
@@ -16,8 +17,6 @@ from typing import Any
 
 import nbformat
 from nbformat.v4 import new_markdown_cell
-
-import cranio_nb
 
 from ...errors import InputRefused
 from ...output.staging import staged
@@ -37,7 +36,7 @@ _FRONT = "front"  # folder of the panels' scripts and styles among the pages
 _CONFIG: dict[str, Any] = {
     "project": "cranio-nb",
     "copyright": "the cranio-nb developers",
-    "release": cranio_nb.__version__,
+    "release": version("cranio-nb"),
     "root_doc": "index",
     "language": "en",
     "extensions": ["myst_nb", "sphinx.ext.autodoc", "numpydoc", "cranio_nb.teaching.site.extension"],

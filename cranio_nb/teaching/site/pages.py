@@ -11,8 +11,6 @@ from importlib import import_module
 from pathlib import Path
 from urllib.parse import quote
 
-import cranio_nb
-
 from ...errors import InputRefused
 
 API = {
@@ -104,10 +102,11 @@ def lesson_head(name: str, repository: str) -> str:
 def _write_api(folder: Path) -> None:
     """The reference: a page for the package's face, and one for each module of `API`."""
     folder.mkdir()
-    names = [name for name in cranio_nb.__all__ if not name.startswith("_")]
+    package = import_module("cranio_nb")
+    names = [name for name in package.__all__ if not name.startswith("_")]
     face = [_heading("The face of the package"), ".. currentmodule:: cranio_nb\n"]
     for name in names:
-        kind = "class" if isinstance(getattr(cranio_nb, name), type) else "function"
+        kind = "class" if isinstance(getattr(package, name), type) else "function"
         face.append(f".. auto{kind}:: {name}\n" + ("   :members:\n" if kind == "class" else ""))
     (folder / "face.rst").write_text("\n".join(face), "utf-8")
     trees = [_rst_tree("", ["face"])]

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from small_site import lesson
+from small_site import few_views, lesson
 
 from cranio_nb.curves import GapEnds
 from cranio_nb.teaching.site.lesson_page import lesson_page
@@ -29,7 +29,9 @@ def small_shown(small):
 
 @pytest.fixture(scope="session")
 def small_page(small):
-    return lesson_page(small, "../pictures/00_small")
+    with pytest.MonkeyPatch.context() as patched:
+        few_views(patched)
+        return lesson_page(small, "../pictures/00_small")
 
 
 @pytest.fixture(scope="session")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lesson_cells import FOLDER
-from small_site import ANSWER, FIGURE, NAME, write_project
+from small_site import ANSWER, FIGURE, NAME, few_views, write_project
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.teaching.site import slides
@@ -39,8 +39,9 @@ def test_formulas_are_drawn_by_the_browser():
     assert text.count("<math") == 2 and text.count('display="block"') == 1 and "3 \\$ each" in text
 
 
-def test_a_lesson_becomes_slides_that_need_nothing_else(tmp_path):
+def test_a_lesson_becomes_slides_that_need_nothing_else(tmp_path, monkeypatch):
     pytest.importorskip("sphinx_revealjs", reason='the extra "site" is not installed')
+    few_views(monkeypatch)
     folder = write_project(tmp_path) / "notebooks"
     page = slides.write_slides(folder / f"{NAME}.ipynb", tmp_path / "talk")
     text = page.read_text()
