@@ -5,13 +5,14 @@
 A column for each checkout (default: the one this file lies in), then what stands behind the figures of the last one.
 
 Room: a top-level module or folder of `cranio_nb`, and `data_synth`, `notebooks`, `benchmarks`; the package's own
-`__init__` is none. Floors: rooms on the longest chain of imports, a circle counted as one. Imports inside functions and
-under TYPE_CHECKING count. Upward: against the list `FLOORS` of tests/test_layers.py, lowest first, where there is one.
-Body: lines that hold code, without signature and docstring, nested functions in the outer one. Call path: functions on
-the longest chain of calls that names alone tell (own module, imports, attributes of modules, methods of `self` and of
-named classes; not the making of objects), recursion counted as one; first by imports at the top of a module, then by
-those inside functions as well. Comments: those of their own line and those behind
-code, without `noqa` and `type:`, for each 100 lines that hold code. Public: without a leading underscore, at the top of
+`__init__` and `__main__` are none. Floors: rooms on the longest chain of imports, a circle counted as one. Imports
+inside functions and under TYPE_CHECKING count. Upward: against the list `FLOORS` of tests/test_layers.py, lowest first,
+where there is one. Body: lines that hold code, without signature and docstring, nested functions in the outer one. Call
+path: functions on the longest chain of calls that names alone tell (own module, imports, attributes of modules, methods
+of `self` and of named classes; not the making of objects), recursion counted as one; first by imports at the top of a
+module, then by those inside functions as well. Comments: those of their own line and those behind code, without `noqa`
+and `type:`, for each 100 lines that hold code.
+Public: without a leading underscore, at the top of
 a module (functions) or of a public class (methods); where a docstring may leave out a section (nothing is returned,
 nothing is given) the function does not count for it.
 """
@@ -171,7 +172,7 @@ def import_figures(
 ) -> tuple[dict[str, str], dict[str, list[str]]]:
     """Rooms, floors, circles, upward imports."""
     graph = import_graph(every)
-    rooms = grouped(graph, {name: room_of(name) for name in every if name != PACKAGE})
+    rooms = grouped(graph, {name: room_of(name) for name in every if name not in (PACKAGE, f"{PACKAGE}.__main__")})
     chain, floors = longest_chain(rooms), floors_named(checkout)
     up = None if floors is None else upward_imports({name: graph[name] & own.keys() for name in own}, floors)
     of_modules, of_rooms, between = (

@@ -42,7 +42,7 @@ def comparison_page(comparison: Comparison) -> str:
     """
     # pictures need a prosthesis, maps need a reference; without them the template leaves their part out
     case = comparison.case
-    return page_template("comparison.html").render(
+    return page_template("comparison_page.html").render(
         version=version("cranio-nb"),
         comparison=comparison,
         findings=opening_remarks(case.closed, case.left_open),

@@ -35,7 +35,7 @@ def report_page(result: RunResult) -> str:
     # only slice methods record slices; without them their tables are left out
     made = result.prosthesis
     slices = made.record.get("slices", [])
-    return page_template("report.html").render(
+    return page_template("design_page.html").render(
         version=version("cranio-nb"),
         result=result,
         made=made,

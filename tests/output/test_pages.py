@@ -24,7 +24,7 @@ def test_a_shot_is_the_figure_with_its_words():
 
 def test_a_template_that_lacks_a_value_fails():
     with pytest.raises(UndefinedError):
-        pages.page_template("report.html").render()
+        pages.page_template("design_page.html").render()
 
 
 def test_views_show_the_skull_below_its_openings(openings):

@@ -1,4 +1,4 @@
-"""Surfaces -> shaded views and distance maps, with the patient's sides and a scale bar."""
+"""Surfaces -> shaded views and distance maps (the paper's Figure 9), with the patient's sides and a scale bar."""
 
 from __future__ import annotations
 

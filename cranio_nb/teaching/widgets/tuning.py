@@ -36,6 +36,12 @@ SLICES = ("axial, as in the paper", "fans from inside the head")
 _WORSE = "#B34E00"  # vermillion, dark enough for letters
 _MAP = 345  # px: width of the map
 _TOP = 1.5  # mm at the upper end of the colour scale
+_PRESETS: dict[str, dict[str, Any]] = {
+    "axial slices": {"slices": SLICES[0]},
+    "k by hand": {"own": True},
+    "tension 2": {"tension": 2.0},
+}
+_ALT = "The designed prosthesis coloured by its distance from the true one, and its scores beside those at the start."
 _MEASURES = (
     ("DSC", "", 3, True),
     ("border DSC", "", 3, True),
@@ -123,20 +129,12 @@ def tuner(case: Case) -> Tuner:
     )
     # the scores at the start, to compare with
     first = made(*(control.value for control in controls))
-    alt = (
-        "The designed prosthesis coloured by its distance from the true one, and its scores beside those at the start."
-    )
     actions = {"save the parameters": lambda panel: f"Written: {panel.save()}"}
-    presets: dict[str, dict[str, Any]] = {
-        "axial slices": {"slices": SLICES[0]},
-        "k by hand": {"own": True},
-        "tension 2": {"tension": 2.0},
-    }
     return Tuner(
         controls,
         lambda **values: _view(made(*values.values()), first, values),
-        alt=alt,
-        presets=presets,
+        alt=_ALT,
+        presets=_PRESETS,
         actions=actions,
         slow=True,
     )

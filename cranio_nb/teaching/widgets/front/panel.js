@@ -140,7 +140,7 @@ function player(control, model, range, move) {
 }
 
 function render({ model, el }) {
-  const caption = make("figcaption");
+  const caption = make("div");
   caption.setAttribute("role", "status");
   const picture = make("img", { alt: model.get("alt"), width: model.get("width"), height: model.get("height") });
   const move = (values) => {
@@ -168,7 +168,7 @@ function render({ model, el }) {
     side.append(make("details", {}, make("summary", {}, "more settings"), ...set(nodes(true))));
   }
   if (actions.length) side.append(make("div", { className: "presets" }, ...actions));
-  const root = make("div", { className: "cranio-panel" }, make("figure", {}, picture, caption), side);
+  const root = make("div", { className: "cranio-panel" }, make("figure", {}, picture, make("figcaption", {}, caption)), side);
   root.setAttribute("data-lm-suppress-shortcuts", "true"); // JupyterLab's own keys would take the arrows
   el.append(root);
 
