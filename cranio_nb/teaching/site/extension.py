@@ -1,4 +1,7 @@
-"""What Sphinx must know beyond its own: formulas as MathML, which browsers draw without a script or a network."""
+"""What Sphinx must know beyond its own: formulas as MathML, which browsers draw without a script or a network.
+
+And headings above parts of the contents, which Sphinx calls headings without saying of which level.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +25,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
         What Sphinx may do with it.
     """
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
+    app.connect("html-page-context", _give_levels, priority=900)  # after the theme has made its contents
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -36,3 +40,9 @@ def _display(writer: Any, node: nodes.Element) -> None:
 def _write(writer: Any, node: nodes.Element, *, display: bool) -> None:
     writer.body.append(latex2mathml.tex2mathml(node.astext(), as_block=display))
     raise nodes.SkipNode
+
+
+def _give_levels(app: Any, page: str, template: str, context: dict[str, Any], tree: Any) -> None:
+    for part in ("body", "furo_navigation_tree"):
+        if part in context:
+            context[part] = context[part].replace('role="heading">', 'role="heading" aria-level="2">')

@@ -19,7 +19,7 @@ from .frames import Frames
 
 STATIC = Path(__file__).parent / "static"
 """Folder of the script and the style of panels without a kernel."""
-SCRIPTS = ("panel.js", "ahead.js")
+SCRIPTS = ("panel.js", "ahead.js", "scroll.js")
 """What a page loads, in this order."""
 STYLES = ("panel.css", "site.css")
 """Its style sheets."""

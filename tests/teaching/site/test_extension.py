@@ -14,7 +14,9 @@ def test_a_formula_is_well_formed_mathml(display):
     from cranio_nb.teaching.site import extension
 
     made = {}
-    app = SimpleNamespace(add_html_math_renderer=lambda name, *visits: made.update({name: visits}))
+    app = SimpleNamespace(
+        add_html_math_renderer=lambda name, *visits: made.update({name: visits}), connect=lambda *event, priority: None
+    )
     assert extension.setup(app)["parallel_read_safe"]
     writer = SimpleNamespace(body=[])
     with pytest.raises(nodes.SkipNode):
@@ -23,3 +25,17 @@ def test_a_formula_is_well_formed_mathml(display):
     tree = ElementTree.fromstring(text)
     assert tree.tag.endswith("math") and (tree.get("display") == "block") == display
     assert [leaf.text for leaf in tree.iter() if leaf.tag.endswith("}mn") or leaf.tag == "mn"] == ["2", "8"]
+
+
+def test_each_heading_of_the_contents_has_a_level():
+    from cranio_nb.teaching.site import extension
+
+    heard = {}
+    app = SimpleNamespace(
+        add_html_math_renderer=lambda *a: None, connect=lambda event, act, priority: heard.update({event: act})
+    )
+    extension.setup(app)
+    context = {"body": '<p class="caption" role="heading">Part</p>', "title": 'role="heading">'}
+    heard["html-page-context"](app, "index", "page.html", context, None)
+    assert context["body"] == '<p class="caption" role="heading" aria-level="2">Part</p>'
+    assert context["title"] == 'role="heading">'
