@@ -1,6 +1,6 @@
 """What Sphinx must know beyond its own: formulas as MathML, which browsers draw without a script or a network.
 
-And headings above parts of the contents, which Sphinx calls headings without saying of which level.
+And what screen readers are told: the level of headings above parts of the contents, what a folded answer is called.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
         What Sphinx may do with it.
     """
     app.add_html_math_renderer("mathml", (_inline, None), (_display, None))
-    app.connect("html-page-context", _give_levels, priority=900)  # after the theme has made its contents
+    app.connect("html-page-context", _name_parts, priority=900)  # after the theme has made its contents
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -42,7 +42,9 @@ def _write(writer: Any, node: nodes.Element, *, display: bool) -> None:
     raise nodes.SkipNode
 
 
-def _give_levels(app: Any, page: str, template: str, context: dict[str, Any], tree: Any) -> None:
+def _name_parts(app: Any, page: str, template: str, context: dict[str, Any], tree: Any) -> None:
     for part in ("body", "furo_navigation_tree"):
         if part in context:
-            context[part] = context[part].replace('role="heading">', 'role="heading" aria-level="2">')
+            leveled = context[part].replace('role="heading">', 'role="heading" aria-level="2">')
+            # its words are its name
+            context[part] = leveled.replace('<summary aria-label="Toggle hidden content">', "<summary>")

@@ -27,7 +27,7 @@ def test_a_formula_is_well_formed_mathml(display):
     assert [leaf.text for leaf in tree.iter() if leaf.tag.endswith("}mn") or leaf.tag == "mn"] == ["2", "8"]
 
 
-def test_each_heading_of_the_contents_has_a_level():
+def test_headings_have_a_level_and_folded_answers_the_name_they_show():
     from cranio_nb.teaching.site import extension
 
     heard = {}
@@ -35,7 +35,10 @@ def test_each_heading_of_the_contents_has_a_level():
         add_html_math_renderer=lambda *a: None, connect=lambda event, act, priority: heard.update({event: act})
     )
     extension.setup(app)
-    context = {"body": '<p class="caption" role="heading">Part</p>', "title": 'role="heading">'}
+    folded = '<summary aria-label="Toggle hidden content">Show the answer</summary>'
+    context = {"body": f'<p class="caption" role="heading">Part</p>{folded}', "title": 'role="heading">'}
     heard["html-page-context"](app, "index", "page.html", context, None)
-    assert context["body"] == '<p class="caption" role="heading" aria-level="2">Part</p>'
+    assert (
+        context["body"] == '<p class="caption" role="heading" aria-level="2">Part</p><summary>Show the answer</summary>'
+    )
     assert context["title"] == 'role="heading">'

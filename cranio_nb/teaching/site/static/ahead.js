@@ -98,27 +98,31 @@
     }
   }
 
-  // Dragging the picture sideways moves the first slider; what turns is dragged up and down as well.
+  // Dragging the picture sideways moves the first slider that has an effect; what turns is dragged up and down as well.
   function drag(model, picture) {
     const controls = model.get("controls");
-    const [across, other] = controls.map((_, i) => i).filter((i) => controls[i].kind === "slider");
-    if (across === undefined) return;
-    const { stops, cyclic } = controls[across];
-    const along = cyclic ? other : undefined;
-    picture.classList.add(cyclic ? "turns" : "across");
+    const sliders = controls.map((_, i) => i).filter((i) => controls[i].kind === "slider");
+    if (!sliders.length) return;
+    const turns = controls[sliders[0]].cyclic;
+    picture.classList.add(turns ? "turns" : "across");
     let from = null;
     picture.addEventListener("pointerdown", (event) => {
-      if (event.button || model.get("off").includes(controls[across].name)) return;
-      from = { x: event.clientX, y: event.clientY, places: model.places };
+      const across = sliders.find((i) => !model.get("off").includes(controls[i].name));
+      if (event.button || across === undefined) return;
+      from = { x: event.clientX, y: event.clientY, places: model.places, across };
       picture.setPointerCapture(event.pointerId);
     });
     picture.addEventListener("pointermove", (event) => {
       if (!from) return;
-      const step = cyclic ? DRAG : Math.max(DRAG, picture.clientWidth / stops.length);
+      const { across } = from;
+      const step = turns ? DRAG : Math.max(DRAG, picture.clientWidth / controls[across].stops.length);
       const to = [...from.places];
       // a scene follows the hand, so its viewer goes the other way round
-      to[across] = model.within(across, to[across] + (cyclic ? -1 : 1) * Math.round((event.clientX - from.x) / step));
-      if (along !== undefined) to[along] = model.within(along, to[along] + Math.round((event.clientY - from.y) / (4 * DRAG)));
+      to[across] = model.within(across, to[across] + (turns ? -1 : 1) * Math.round((event.clientX - from.x) / step));
+      if (turns && sliders.length > 1) {
+        const along = sliders[1];
+        to[along] = model.within(along, to[along] + Math.round((event.clientY - from.y) / (4 * DRAG)));
+      }
       model.moveTo(to);
     });
     for (const kind of ["pointerup", "pointercancel"]) {

@@ -86,9 +86,9 @@ const ROWS = { slider: sliderRow, choice: choiceRow, switch: switchRow };
 
 function player(control, model, range, move) {
   const button = (text, label) => make("button", { type: "button", title: label, aria: { label } }, text);
-  const back = button("\u2212 1", "one step back");
+  const back = button("\u2212 1", "\u2212 1: one step back");
   const play = button("\u25B6 Play", "play");
-  const on = button("+ 1", "one step on");
+  const on = button("+ 1", "+ 1: one step on");
   const pace = make("select", { title: "pace", aria: { label: "pace" } });
   pace.append(...PACES.map(([name], i) => make("option", { value: i }, name)));
   let timer = null;
