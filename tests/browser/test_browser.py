@@ -111,6 +111,9 @@ def test_a_panel_fits_a_laptop_and_obeys_mouse_keys_and_typing(small):
     page.keyboard.press("End")
     assert handle.evaluate("e => getComputedStyle(e).outlineStyle") == "solid"
     assert until(lambda: "k = 0.4," in status.inner_text()), status.inner_text()
+    for key in ("ArrowLeft", "ArrowDown", "ArrowLeft", "ArrowRight"):  # which move through the cells elsewhere
+        page.keyboard.press(key)
+    assert until(lambda: "k = 0.396," in status.inner_text()), status.inner_text()
     box.get_by_role("textbox", name=PRESSURE).fill("0.0999")
     page.keyboard.press("Enter")
     assert until(lambda: "k = 0.1," in status.inner_text()), status.inner_text()

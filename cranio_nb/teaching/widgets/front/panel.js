@@ -42,15 +42,11 @@ function sliderRow(control, model, move) {
     range.setAttribute("aria-valuetext", `${text()} ${control.unit}`.trim());
   });
   range.addEventListener(heard, () => move({ [control.name]: stops[range.value] }));
-  const typed = () => {
+  box.addEventListener("change", () => {
     const value = Number(box.value.replace(",", "."));
     if (box.value.trim() && Number.isFinite(value)) range.value = nearest(stops, value);
     range.dispatchEvent(new Event("input"));
     if (heard === "change") range.dispatchEvent(new Event("change"));
-  };
-  box.addEventListener("change", typed);
-  box.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") typed(); // JupyterLab takes what the browser would do with it
   });
   const show = (value, top, off) => {
     range.max = top === undefined ? stops.length - 1 : nearest(stops, top);
@@ -169,7 +165,9 @@ function render({ model, el }) {
   }
   if (actions.length) side.append(make("div", { className: "presets" }, ...actions));
   const root = make("div", { className: "cranio-panel" }, make("figure", {}, picture, make("figcaption", {}, caption)), side);
-  root.setAttribute("data-lm-suppress-shortcuts", "true"); // JupyterLab's own keys would take the arrows
+  root.addEventListener("keydown", (event) => {
+    if (!event.ctrlKey && !event.metaKey && !event.altKey) event.stopPropagation(); // else JupyterLab takes the arrows
+  });
   el.append(root);
 
   let url = null;
