@@ -107,7 +107,7 @@ def test_a_slider_moves_picture_caption_and_description_by_keyboard(page):
     slider = panel.get_by_role("slider", name="grey of it (levels)", exact=True)
     assert slider.get_attribute("aria-valuetext") == "50 levels"
     slider.focus()
-    for key, level in (("ArrowRight", 60), ("End", 250), ("Home", 0)):
+    for key, level in (("ArrowRight", 60), ("End", 100), ("Home", 0)):
         page.keyboard.press(key)
         caption, alt, address = shown(panel)
         assert caption == f"grey {level}, a narrow bar at the left of it <1>"
@@ -125,18 +125,18 @@ def test_the_picture_is_dragged_by_mouse(page):
     page.mouse.move(box["x"] + box["width"] - 5, y, steps=5)
     page.mouse.up()
     caption, _, address = shown(panel)
-    assert caption.startswith("grey 250,") and grey_of(page, address) == 250
+    assert caption.startswith("grey 100,") and grey_of(page, address) == 100
 
 
 def test_words_switches_typed_numbers_and_presets_move_it_too(page):
     panel = panels(page).first
     panel.get_by_role("combobox", name="side").select_option("right")
     panel.get_by_role("checkbox", name="wide bar").check()
-    panel.get_by_role("textbox", name="grey of it (levels), typed").fill("128")
+    panel.get_by_role("textbox", name="grey of it (levels), typed").fill("68")
     page.keyboard.press("Enter")
-    assert shown(panel)[0] == "grey 130, a wide bar at the right of it <1>"
-    panel.get_by_role("button", name="white").tap()
-    assert shown(panel)[0] == "grey 250, a wide bar at the right of it <1>"
+    assert shown(panel)[0] == "grey 70, a wide bar at the right of it <1>"
+    panel.get_by_role("button", name="light").tap()
+    assert shown(panel)[0] == "grey 100, a wide bar at the right of it <1>"
     panel.get_by_role("button", name="as at the start").tap()
     assert shown(panel)[0] == "grey 50, a narrow bar at the left of it <1>"
 
@@ -145,7 +145,7 @@ def test_a_film_plays_to_its_end(page):
     panel = panels(page).first
     panel.get_by_role("combobox", name="pace").select_option("20 steps a second")
     panel.get_by_role("button", name="play").click()
-    panel.get_by_text("grey 250,").wait_for(timeout=20_000)
+    panel.get_by_text("grey 100,").wait_for(timeout=20_000)
     panel.get_by_role("button", name="play").wait_for()
 
 

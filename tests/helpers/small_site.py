@@ -33,11 +33,11 @@ It brightens.
 
 </details>"""
 PANEL = """controls = (
-    Slider("grey", "grey of it", 0, 250, 50, 10, unit="levels", player=True),
+    Slider("grey", "grey of it", 0, 100, 50, 10, unit="levels", player=True),
     Choice("side", "side", ("left", "right"), "left"),
     Switch("wide", "wide bar", False),
 )
-presets = {"white": {"grey": 250}}
+presets = {"light": {"grey": 100}}
 panel = widgets.Panel(controls, draw, alt="A blue bar on grey <box>.", presets=presets)
 panel"""
 SCENE = """corners = np.array([[0.0, 0, 0], [30, 0, 0], [0, 40, 0], [0, 0, 50]])

@@ -117,4 +117,4 @@ def _control(axis: Axis) -> dict[str, Any]:
 @lru_cache(maxsize=1)
 def _template() -> Template:
     loader = PackageLoader("cranio_nb.teaching.site")
-    return Environment(loader=loader, autoescape=True, undefined=StrictUndefined).get_template("panel.html.j2")
+    return Environment(loader=loader, autoescape=True, undefined=StrictUndefined).get_template("panel_html.html")

@@ -7,11 +7,14 @@ import pytest
 from lesson_cells import FOLDER, code, tagged
 
 from cranio_nb.teaching.site import lesson_page as module
+from cranio_nb.teaching.site.axes import Axis
 from cranio_nb.teaching.site.lesson_page import lesson_page
+from cranio_nb.teaching.widgets.controls import Slider
 
 
 def html_of(page):
-    return [o.data["text/html"] for cell in code(page.notebook) for o in cell.outputs if "data" in o]
+    shown = [o.data for cell in code(page.notebook) for o in cell.outputs if "data" in o]
+    return [data["text/html"] for data in shown if "text/html" in data]
 
 
 def test_a_stored_picture_is_the_file_that_the_page_names(small, small_page):
@@ -50,7 +53,8 @@ def test_the_colab_cell_of_the_shipped_lessons_is_known():
 
 @pytest.mark.parametrize("name", ["04_deformable_model"])
 def test_a_shipped_lesson_is_small_before_its_panels_are_touched(name, monkeypatch):
-    monkeypatch.setattr(module, "_ROOM", 100_000)
+    still = Axis(Slider("step", "step", 0, 0, 0), (0,), 0)
+    monkeypatch.setattr(module, "axes_of", lambda *given: (still,))
     page = lesson_page(nbformat.read(FOLDER / f"{name}.ipynb", as_version=4), "pictures")
     assert sum("cranio-ahead" in text for text in html_of(page)) == 1
     stored = sum(len(data) for file, data in page.files.items() if file.endswith(".png"))

@@ -48,7 +48,7 @@ def test_the_front_is_told_of_the_controls_as_in_a_notebook(made, told):
         assert {name: control[name] for name in notebook} == notebook
         assert control["stops"] == list(axis.stops)
     assert told["panel"]["values"] == panel.values
-    assert told["panel"]["presets"]["white"] == {"grey": 250}
+    assert told["panel"]["presets"]["light"] == {"grey": 100}
 
 
 def test_no_text_ends_the_script_or_the_html(made):
