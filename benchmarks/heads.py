@@ -6,9 +6,10 @@ For each seed from --first on one intact head and one with one to three holes of
 and roll within 30 degrees, any turn, every tenth head upside down, every tenth on its side; slices of 0.5 to 5 mm;
 nothing, or one or two things around the head; how far the scan reaches. Seeds below 10000 were looked at while the
 rules were made. Outcomes: "right" (as many openings designed as holes, each over its own hole; intact: none),
-"doubtful" (what is missed is listed), "refused" (named by its code), "silent" (a hole missed without a word), "false"
-(an opening designed where there is no hole), "count" (each hole found, but in another number of openings), "not drawn"
-(the seed's holes do not fit beside each other).
+"doubtful" (what is missed is listed), "refused" (named by its code), "silent" (a hole missed without a word), "warned"
+(what is missed is narrower than the width that slices so thick are said to hide), "false" (an opening designed where
+there is no hole), "count" (each hole found, but in another number of openings), "not drawn" (the seed's holes do not
+fit beside each other).
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from cranio_nb.errors import CranioError
 from cranio_nb.stages.segmentation import bone_of
 from cranio_nb.vault.opening_choice import JudgedOpening, choose_openings
 from cranio_nb.vault.opening_search import survey_openings
+from cranio_nb.vault.remarks import thickness_remarks
 from cranio_nb.volume import Volume
 from data_synth import AROUND, SIZES, Case, Pose, face_case
 
@@ -86,8 +88,12 @@ def _holes(case: Case) -> list[NDArray[np.bool_]]:
 
 
 def _widths(case: Case, holes: Sequence[NDArray[np.bool_]]) -> str:
-    spots = [np.argwhere(hole) @ case.affine[:3, :3].T for hole in holes]
-    return " ".join(f"{np.linalg.norm(np.ptp(s, axis=0)):.0f}" for s in spots)
+    return " ".join(f"{_width(case, hole):.0f}" for hole in holes)
+
+
+def _width(case: Case, hole: NDArray[np.bool_]) -> float:
+    """Diagonal of the box around a hole, mm: more than its width."""
+    return float(np.linalg.norm(np.ptp(np.argwhere(hole) @ case.affine[:3, :3].T, axis=0)))
 
 
 def _compared(
@@ -106,8 +112,11 @@ def _compared(
     ]
     if false:
         return {"outcome": "false", "words": " ".join(one.verdict.reason for one in false)}
-    if set(missed) - set(listed):
-        return {"outcome": "silent", "words": f"missed: {missed}"}
+    unsaid = set(missed) - set(listed)
+    if unsaid:
+        hidden = max((one.values["missed_mm"] for one in thickness_remarks(spacing[0])), default=0.0)
+        warned = all(_width(case, true[n]) < hidden for n in unsaid)
+        return {"outcome": "warned" if warned else "silent", "words": f"missed: {missed}"}
     if listed:
         return {"outcome": "doubtful", "words": f"doubtful: {listed}"}
     return {"outcome": "right" if len(designed) == len(true) else "count", "words": ""}

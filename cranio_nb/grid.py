@@ -6,6 +6,7 @@ Frames: any array index, fractions allowed; world (x, y, z) in mm, DICOM LPS.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +17,7 @@ Box = tuple[slice, slice, slice]
 
 # Axis order of the package: planes rise to the top of the head (z), rows to the back (y), columns to the left (x).
 _WORLD_AXIS = (2, 1, 0)
+_BORDER = 1e-6  # voxels to either side of a border that still belong to it; rounding moves points by less
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,7 @@ def canonical_order(affine: Affine) -> AxisOrder:
 
 
 def inside_grid(index: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-    """Whether fractional indices round to an element of an array.
+    """Whether fractional indices lie in an element of an array, its border included.
 
     Parameters
     ----------
@@ -90,12 +92,12 @@ def inside_grid(index: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
     >>> inside_grid([[0.4, 2.4], [0.4, 2.6]], (1, 3))
     array([ True, False])
     """
-    nearest = np.rint(np.moveaxis(np.asarray(index, float), -1, 0))
-    return np.logical_and.reduce([(i >= 0) & (i < n) for i, n in zip(nearest, shape, strict=True)])
+    pairs = zip(*_nearest(index), shape, strict=True)
+    return np.logical_and.reduce([(high >= 0) & (low < n) for low, high, n in pairs])
 
 
 def nearest_values(values: NDArray, index: ArrayLike, *, outside: float) -> NDArray:
-    """Values of the array elements nearest to fractional indices; a half goes to the even element.
+    """Values of the array elements nearest to fractional indices; on a border, the largest of those that share it.
 
     Parameters
     ----------
@@ -112,11 +114,56 @@ def nearest_values(values: NDArray, index: ArrayLike, *, outside: float) -> NDAr
     --------
     >>> nearest_values(np.array([3, 4, 5]), [[0.6], [7.0]], outside=0)
     array([4, 0])
+    >>> nearest_values(np.array([3, 4, 5]), [[0.5], [-0.5]], outside=0)
+    array([4, 3])
     """
-    # element 0 stands in where there is none, and is replaced at the end
-    inside = inside_grid(index, values.shape)
-    nearest = (np.rint(i) for i in np.moveaxis(np.asarray(index, float), -1, 0))
-    return np.where(inside, values[tuple(np.where(inside, i, 0).astype(np.intp) for i in nearest)], outside)
+    low, high = _nearest(index)
+    found = _values(values, low, outside)
+    border = (low != high).any(axis=0)
+    if border.any():
+        for one in product(*zip(low[:, border], high[:, border], strict=True)):
+            found[border] = np.fmax(found[border], _values(values, np.stack(one), outside))
+    return found
+
+
+def touched(index: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
+    """Elements of an array in which fractional indices lie; on a border, all that share it.
+
+    Parameters
+    ----------
+    index : array_like, shape (m, k)
+    shape : tuple of int
+        k numbers.
+
+    Returns
+    -------
+    ndarray of bool, shape `shape`
+
+    Examples
+    --------
+    >>> touched([[0.6], [2.5], [7.0]], (5,))
+    array([False,  True,  True,  True, False])
+    """
+    marked = np.zeros(shape, bool)
+    for one in product(*zip(*_nearest(index), strict=True)):
+        inside = np.logical_and.reduce([(i >= 0) & (i < n) for i, n in zip(one, shape, strict=True)])
+        marked[tuple(i[inside] for i in one)] = True
+    return marked
+
+
+def _nearest(index: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Lowest and highest element that a fractional index lies in, shape (k, ...): two only on a border.
+
+    Points that a turned header moves by rounding lie on the same border as before.
+    """
+    at = np.moveaxis(np.asarray(index, float), -1, 0)
+    return np.ceil(at - (0.5 + _BORDER)).astype(np.intp), np.floor(at + (0.5 + _BORDER)).astype(np.intp)
+
+
+def _values(values: NDArray, at: NDArray[np.intp], outside: float) -> NDArray:
+    """Values of elements, shape (...); element 0 stands in where there is none, and is replaced at the end."""
+    inside = np.logical_and.reduce([(i >= 0) & (i < n) for i, n in zip(at, values.shape, strict=True)])
+    return np.where(inside, values[tuple(np.where(inside, i, 0) for i in at)], outside)
 
 
 def box_around(index: ArrayLike, shape: tuple[int, int, int], margin: ArrayLike = 0) -> Box:

@@ -184,7 +184,7 @@ class Volume:
         return self.at_index(self.to_voxel(points), outside=outside)
 
     def at_index(self, index: ArrayLike, *, outside: float) -> NDArray:
-        """Values of the voxels nearest to fractional indices; a half goes to the even voxel.
+        """Values of the voxels nearest to fractional indices; on a border, the largest of those that share it.
 
         Parameters
         ----------

@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
-from cranio_nb.grid import AxisOrder, box_around, canonical_order, inside_grid, move_affine, nearest_values
+from cranio_nb.grid import AxisOrder, box_around, canonical_order, inside_grid, move_affine, nearest_values, touched
 from cranio_nb.volume import Volume
 
 
@@ -19,11 +21,33 @@ def test_nearest_values_are_those_of_a_loop(shape):
     np.testing.assert_array_equal(inside_grid(index, shape), found >= 0)
 
 
-def test_a_half_goes_to_the_even_element_and_the_type_stays():
-    values = np.array([False, True, False, True])
-    found = nearest_values(values, [[0.5], [1.5], [2.5], [-0.5], [3.5]], outside=False)
-    assert found.dtype == bool and found.tolist() == [False, False, False, False, False]
-    assert nearest_values(np.arange(4), [[0.5], [1.5], [2.5]], outside=9).tolist() == [0, 2, 2]
+def test_a_border_takes_the_largest_of_those_that_share_it_and_the_type_stays():
+    values = np.array([False, True, False, False, True])
+    found = nearest_values(values, [[0.5], [1.5], [2.5], [-0.5], [4.5]], outside=False)
+    assert found.dtype == bool and found.tolist() == [True, True, False, False, True]
+    assert nearest_values(np.arange(4), [[0.5], [1.5], [3.5], [4.0]], outside=-1).tolist() == [1, 2, 3, -1]
+    corner = np.zeros((2, 2, 2), bool)
+    corner[1, 0, 1] = True
+    assert nearest_values(corner, [0.5, 0.5, 0.5], outside=False)
+
+
+@given(st.integers(0, 99), st.sampled_from((-1e-9, 1e-9)))
+def test_rounding_moves_no_point_to_another_element(seed, rounding):
+    rng = np.random.default_rng(seed)
+    values, at = rng.random((5, 6, 7)) < 0.5, rng.integers(-2, 16, (50, 3)) / 2
+    for seen in (lambda i: nearest_values(values, i, outside=False), lambda i: inside_grid(i, values.shape)):
+        np.testing.assert_array_equal(seen(at + rounding * rng.random(at.shape)), seen(at))
+    np.testing.assert_array_equal(touched(at + rounding, values.shape), touched(at, values.shape))
+
+
+@given(st.integers(0, 99), st.integers(0, 2))
+def test_reversed_elements_are_met_by_reversed_indices(seed, axis):
+    rng = np.random.default_rng(seed)
+    values, at = rng.random((5, 6, 7)) < 0.5, rng.integers(-2, 16, (50, 3)) / 2
+    back = at.copy()
+    back[:, axis] = values.shape[axis] - 1 - at[:, axis]
+    here, there = (nearest_values(v, i, outside=False) for v, i in ((values, at), (np.flip(values, axis), back)))
+    np.testing.assert_array_equal(here, there)
 
 
 def test_a_box_holds_its_points_and_stays_in_the_grid():

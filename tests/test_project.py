@@ -104,7 +104,7 @@ class TestDependencies:
 
     def test_tests_import_what_they_declare(self):
         declared = {name_of(r) for r in [*CORE, *EXTRAS["test"]]}
-        local = {path.stem for path in (ROOT / "tests").rglob("*.py")}
+        local = {path.stem for path in (ROOT / "tests").rglob("*")}
         assert distributions(set(imported("tests")) - local) <= declared
 
     def test_each_bound_is_explained(self):

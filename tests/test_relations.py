@@ -13,9 +13,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 from dicom_series import head, save, series
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
-from scipy.ndimage import binary_dilation, binary_erosion
 from scipy.spatial.transform import Rotation
 
 from cranio_nb.errors import NoOpening
@@ -32,7 +31,6 @@ from data_synth import phantom_case
 
 METHODS = st.sampled_from(("slicewise", "thin-plate", "hull"))
 DEFECTS = st.sampled_from(("burr_hole", "unilateral"))
-BLOCK = np.ones((3, 3, 3))
 MOVES = st.tuples(*[st.floats(-900, 900)] * 3)
 
 
@@ -62,17 +60,14 @@ def test_2_quarter_turns_and_flips_of_the_stored_axes_change_nothing(defect, axe
     np.testing.assert_array_equal(stored.affine, bone.affine)
 
 
+@example("unilateral", "slicewise", (0, 0, 1), (0, 0, 0))
 @given(DEFECTS, METHODS, st.tuples(*[st.floats(-25, 25)] * 3), MOVES)
 def test_3_a_turned_header_turns_the_mesh(defect, method, degrees, shift):
+    """Also where rays meet voxels on their very border, which rounding moves to either side."""
     turn = Rotation.from_euler("xyz", degrees, degrees=True).as_matrix()
     here, there = designed(defect, method), design(moved(head_with(defect)[1], turn, shift), method=method)
-    # rays that meet voxels on their very border round to either side at some turns, by 1e-14: 23 voxels of the
-    # unilateral opening's sheet do at (0, 0, 1) degrees; so far only the outermost voxels may differ
-    differ, solid = there.patch.voxels ^ here.patch.voxels, here.patch.voxels
-    assert not (differ & (binary_erosion(solid, BLOCK) | ~binary_dilation(solid, BLOCK))).any()
-    assert scores.dice(here.patch, here.patch.with_voxels(there.patch.voxels)) > 0.97
-    middle = (here.mesh.vertices @ turn.T + shift).mean(axis=0)
-    np.testing.assert_allclose(there.mesh.vertices.mean(axis=0), middle, atol=0.5)
+    np.testing.assert_array_equal(there.patch.voxels, here.patch.voxels)
+    np.testing.assert_allclose(there.mesh.vertices, here.mesh.vertices @ turn.T + shift, atol=1e-4)
 
 
 @given(DEFECTS, METHODS, MOVES)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 
 from ..drawing.front_end import proxy
+from ..teaching.shipped import install_command
 
 _NEEDED = tuple(
     "numpy scipy scikit-image pydicom pyjpegls pylibjpeg-openjpeg imagecodecs nibabel pynrrd trimesh networkx "
@@ -70,7 +71,7 @@ def examine() -> Iterator[Check]:
         yield _package(name, "missing", f"pip install {name}")
     for extra, names in _OPTIONAL.items():
         for name in names:
-            yield _package(name, "optional", f'pip install -e ".[{extra}]"')
+            yield _package(name, "optional", install_command(extra))
     yield _front_end()
     yield _memory()
     yield _drawing("pictures", _PLOT, "missing", "Install matplotlib again.")
@@ -122,7 +123,7 @@ def _front_end() -> Check:
     if between:
         return Check("front end", "ok", f"{between}: 3-D scenes are pages of their own")
     if not _installed("jupyterlab"):
-        return Check("front end", "optional", "no JupyterLab", 'pip install -e ".[lab]"')
+        return Check("front end", "optional", "no JupyterLab", install_command("lab"))
     return Check(
         "front end", "ok", "JupyterLab on this machine; start it with `cranio-nb lab`, which brings its settings"
     )

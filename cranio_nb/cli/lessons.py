@@ -9,18 +9,41 @@ import click
 from ..errors import InputRefused
 from .options import PATH, check_writes, debug
 
+shipped = click.option(
+    "--folder", type=PATH, show_default="those of the package", help="Holds executed lessons, NN_topic.ipynb."
+)
+
 
 @click.group()
 def lessons() -> None:
-    """Make the lesson notebooks from their texts; grade what students hand in.
+    """Copy the lessons to work in, grade what is handed in, make the notebooks from their texts.
 
     \b
     Examples:
+      cranio-nb lessons copy lessons
       cranio-nb lessons build
       cranio-nb lessons html pages
       cranio-nb lessons site pages
       cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
+      cranio-nb lessons export course --for nbgrader
     """
+
+
+@lessons.command()
+@click.argument("out", type=PATH, metavar="DIR")
+@debug
+def copy(out: Path) -> None:
+    """Copy the lessons that come with the package to DIR: solved ones, and those to fill in below DIR/exercises.
+
+    \b
+    Example:
+      cranio-nb lessons copy lessons && cranio-nb lab lessons
+    """
+    from ..teaching.shipped import copy_lessons, lesson_names, shipped_lessons
+
+    check_writes(out, {name.split("/")[0] for name in lesson_names()}, {"the lessons": shipped_lessons()})
+    made = copy_lessons(out)
+    click.echo(f"{len(made)} notebooks in {out}. Open them: cranio-nb lab {out}")
 
 
 @lessons.command()
@@ -56,17 +79,19 @@ def build(folder: Path, only: str, check: bool) -> None:
 
 @lessons.command()
 @click.argument("out", type=PATH)
-@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@shipped
 @debug
-def html(out: Path, folder: Path) -> None:
+def html(out: Path, folder: Path | None) -> None:
     """Write the lessons as web pages, every picture with its description; nothing is run.
 
     \b
     Example:
       cranio-nb lessons html pages
     """
+    from ..teaching.shipped import shipped_lessons
     from ..teaching.web_pages import write_pages
 
+    folder = folder or shipped_lessons()
     notebooks = sorted(folder.glob("*.ipynb"))
     check_writes(out, [f"{path.stem}.html" for path in notebooks], {path.name: path for path in notebooks})
     for path in write_pages(folder, out):
@@ -123,20 +148,55 @@ def slides(number: str, out: Path, folder: Path) -> None:
 
 @lessons.command()
 @click.argument("notebooks", nargs=-1, required=True, type=PATH)
+@click.option("--out", type=PATH, default=Path("grades"), show_default=True, help="Folder for table and pages.")
 @debug
-def grade(notebooks: tuple[Path, ...]) -> None:
-    """Run notebooks that students hand in, and print the points of each exercise.
+def grade(notebooks: tuple[Path, ...], out: Path) -> None:
+    """Run notebooks that students hand in; write a table, a page for each and a page on the class.
 
-    They are run as programs on this machine, with your rights: use a machine that you can spare.
+    They are run as programs on this machine, with your rights: use a machine that you can spare. A student is called
+    by the folder of the notebook, or by the file where its name is not just that of the lesson.
 
     \b
     Example:
-      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
+      cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb --out grades
     """
-    from ..teaching.build import points
+    from ..teaching.grading import grades_folder, marks
 
-    for path in notebooks:
-        found = points(path)
-        total = sum(got for got, _ in found.values())
-        each = "  ".join(f"{name}: {got}/{most}" for name, (got, most) in found.items())
-        click.echo(f"{path}  {total}/{sum(most for _, most in found.values())}  {each}")
+    paths = list(dict.fromkeys(notebooks))
+    check_writes(out, grades_folder.FILES, {f"NOTEBOOKS ({path})": path for path in paths})
+    graded = []
+    for path, student in zip(paths, marks.students(paths), strict=True):
+        one = marks.grade(path, student)
+        each = "  ".join(f"{v.name}: {v.points}/{v.out_of}" for v in one.verdicts)
+        click.echo("  ".join(filter(None, [str(path), f"{one.points}/{one.out_of}", each, one.remark])))
+        graded.append(one)
+    grades_folder.write_grades(graded, out)
+    for name in grades_folder.FILES:
+        click.echo(out / name)
+
+
+@lessons.command()
+@click.argument("out", type=PATH)
+@click.option("--for", "tool", type=click.Choice(("nbgrader", "otter")), required=True, help="The tool.")
+@shipped
+@debug
+def export(out: Path, tool: str, folder: Path | None) -> None:
+    """Write the lessons as assignments of nbgrader or Otter-Grader, which give the same points as the checks.
+
+    \b
+    Examples:
+      cranio-nb lessons export course --for nbgrader
+      cranio-nb lessons export course --for otter
+    """
+    from ..teaching.export.assignment import write_assignments
+    from ..teaching.export.nbgrader import NBGRADER
+    from ..teaching.export.otter import OTTER
+    from ..teaching.shipped import shipped_lessons
+
+    folder = folder or shipped_lessons()
+    chosen = {"nbgrader": NBGRADER, "otter": OTTER}[tool]
+    reads = {path.name: path for path in sorted(folder.glob("*.ipynb"))}
+    made = [chosen.place.format(lesson=path.stem) for path in reads.values()]
+    check_writes(out, {name.split("/")[0] for name in (*made, *chosen.files)}, reads)
+    for path in write_assignments(folder, out, chosen):
+        click.echo(path)

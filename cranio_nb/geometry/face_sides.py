@@ -55,6 +55,5 @@ def _touches_bone(mesh: Mesh, bone: Volume) -> NDArray[np.bool_]:
     # a step of at most a voxel along any axis, so that no voxel is passed over
     start, step = bone.to_voxel(mesh.centres), bone.steps(mesh.normals)
     step /= np.abs(step).max(axis=1, keepdims=True).clip(1e-12)
-    # rounded first, so that a half falls to the same voxel in every header
-    places = (np.round(start + reach * step, 6) for reach in (0.5, 1.0, 1.5))
+    places = (start + reach * step for reach in (0.5, 1.0, 1.5))
     return np.logical_or.reduce([bone.at_index(place, outside=False) for place in places]).astype(bool)

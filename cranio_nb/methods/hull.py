@@ -28,6 +28,7 @@ from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from ..geometry import voxel_pieces
+from ..grid import nearest_values
 from ..opening import Opening
 from ..options import Option
 from ..stages import prosthesis_volume
@@ -205,10 +206,6 @@ def _first_bone(bone: NDArray[np.bool_], inside: NDArray[np.float64]) -> NDArray
     steps = np.stack([np.cos(angles), np.sin(angles)], axis=-1)
     lengths = np.arange(1.0, np.hypot(*bone.shape) / 2)
     points = inside + steps[:, None] * lengths[:, None]
-    index = np.rint(np.round(points, 6)).astype(int)  # a half falls the same way in every header
-    # samples beyond the slice count as no bone
-    known = ((index >= 0) & (index < bone.shape)).all(axis=-1)
-    row, col = np.moveaxis(np.where(known[..., None], index, 0), -1, 0)
-    hit = bone[row, col] & known
+    hit = nearest_values(bone, points, outside=False)
     rays = np.flatnonzero(hit.any(axis=1))
     return points[rays, hit[rays].argmax(axis=1)]

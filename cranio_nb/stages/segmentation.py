@@ -21,9 +21,13 @@ BONE_HU: float = THRESHOLD.default
 
 AIR_HU = -300.0
 """HU below which a voxel holds mostly air."""
-_AIR_GAP_MM = 3.0  # of air on a line between the head and what is beside it; swabs and folds of skin hold less
-_INSIDE_MM = 40.0  # from the middle of the skull, still in the head
-_LINES = 400  # from the middle to a piece
+_COARSE_MM = 3.0  # between the voxels among which the skin is sought
+_AIR_GAP_MM = 6.0  # width of the gaps through which the air around the head is followed; sinuses open through less
+_WEDGE_MM = 24.0  # as far it is followed on through narrower gaps
+_BAR_MM = 24.0  # width of the bars and plates that are taken off the head; the head itself is wider everywhere
+_MARGIN_MM = 3.0  # beyond the skin, which the coarse voxels miss by as much
+_LEAST_SOFT = 0.5  # of what lies within the skin; a dry skull is full of air
+_LEAST_BONE = 0.2  # of all bone that lies within the skin, else what was found is not a head
 _SAME_SLICE = np.zeros((3, 3, 3), bool)  # neighbours share an edge within their slice
 _SAME_SLICE[1] = ndimage.generate_binary_structure(2, 1)
 
@@ -47,8 +51,8 @@ def segment(
     max_hole_mm2 : float
         Holes of a slice up to this area are filled. The cranial cavity (above 5000 mm2) never is.
     min_part : float, 0 to 1
-        Loose parts smaller than this fraction of the skull's volume are dropped, as are larger ones that lie outside
-        the head (couch, head holder).
+        Loose parts smaller than this fraction of the skull's volume are dropped. What stands outside the skin (couch,
+        head holder, frame) always is.
 
     Returns
     -------
@@ -77,15 +81,16 @@ def segment(
     >>> int(bone.voxels.sum()) == 10 * 10 * 10
     True
     """
-    # threshold; all further work is in the box of what reaches it
-    mask = ct.voxels if ct.voxels.dtype == bool else apply_threshold(ct.voxels, threshold, upper)
+    # threshold, and what the skin encloses; all further work is in the box of that
+    mask = ct.voxels
+    if mask.dtype != bool:
+        mask = within_skin(apply_threshold(ct.voxels, threshold, upper), ct)
     box = ndimage.find_objects(mask.view(np.uint8))
     if not box:
         raise InputRefused("NoBone", f"No voxel reaches {threshold:g} HU.", "Lower the bone threshold, or give a CT.")
 
     # artefacts first, so that no hole of theirs is filled
-    hu = None if ct.voxels.dtype == bool else ct.voxels[box[0]]
-    skull = drop_artefacts(mask[box[0]], min_part=min_part, hu=hu, spacing=ct.spacing)
+    skull = drop_artefacts(mask[box[0]], min_part=min_part)
     out = np.zeros(ct.shape, bool)
     out[box[0]] = fill_holes(skull, max_hole_px=max_hole_mm2 / float(np.prod(ct.spacing[1:])))
     return ct.with_voxels(out)
@@ -180,14 +185,61 @@ def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDA
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 
 
-def drop_artefacts(
-    mask: NDArray[np.bool_],
-    *,
-    min_part: float = 0.02,
-    hu: NDArray | None = None,
-    spacing: NDArray[np.float64] | None = None,
-) -> NDArray[np.bool_]:
-    """Keep the skull and its loose pieces; drop islands, couch, head holder and frames.
+def within_skin(mask: NDArray[np.bool_], ct: Volume) -> NDArray[np.bool_]:
+    """Take off the head what stands in the air around it: couch, head holder, frames, also where they touch it.
+
+    Parameters
+    ----------
+    mask : ndarray of bool, shape (P, R, C)
+        Thresholded CT.
+    ct : Volume
+        HU: shows where skin ends and air begins.
+
+    Returns
+    -------
+    ndarray of bool, shape (P, R, C)
+        `mask` within the skin; all of it where no head in its skin is seen (a dry skull).
+
+    Notes
+    -----
+    Around the head is the air that is met from the edges of the slices through gaps of some width. What remains is
+    opened (an erosion, then a dilation) by a box wider than bars and plates and narrower than any part of the head.
+
+    Examples
+    --------
+    A head of 80 mm, and a plate of 3 mm on which it lies:
+
+    >>> hu = np.full((40, 60, 60), -1000)
+    >>> hu[:, 20:40, 20:40], hu[:, 22:38, 22:38], hu[:, 40] = 40, 900, 900
+    >>> kept = within_skin(hu >= 400, Volume(hu, np.diag([4.0, 4, 4, 1])))
+    >>> bool(kept[:, 22:38, 22:38].all()), int(kept[:, 42:].sum())
+    (True, 0)
+    """
+    every = np.maximum(1, _COARSE_MM // ct.spacing).astype(int)
+    coarse = tuple(slice(None, None, n) for n in every)
+    air, bone = ct.voxels[coarse] < AIR_HU, mask[coarse]
+    head = _inside_air(air, ct.spacing * every)
+    if not head.any() or air[head].mean() > 1 - _LEAST_SOFT or not (bone & ~head).any():
+        return mask
+    if np.count_nonzero(bone & head) < _LEAST_BONE * np.count_nonzero(bone):
+        return mask
+    for axis, (n, length) in enumerate(zip(every, mask.shape, strict=True)):
+        head = head.repeat(n, axis).take(range(length), axis)
+    return mask & head
+
+
+def _inside_air(air: NDArray[np.bool_], spacing: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """What the air around the head encloses, without bars and plates narrower than `_BAR_MM`."""
+    labels, _ = ndimage.label(~_dilate(~air, _AIR_GAP_MM, spacing))
+    around = np.isin(labels, np.setdiff1d(_border_labels(labels), 0))
+    # on into the wedge between the head and what it touches, not up to the sinuses
+    into = int(_WEDGE_MM / spacing.min())
+    body = ~ndimage.binary_dilation(_dilate(around, _AIR_GAP_MM, spacing) & air, iterations=into, mask=air)
+    return _dilate(_dilate(_erode(body, _BAR_MM, spacing), _BAR_MM, spacing) & body, 2 * _MARGIN_MM, spacing)
+
+
+def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArray[np.bool_]:
+    """Keep the skull and its loose pieces; drop islands, and what stands beside it.
 
     Parameters
     ----------
@@ -195,15 +247,11 @@ def drop_artefacts(
         Thresholded CT.
     min_part : float, 0 to 1
         Smallest kept piece as a fraction of the largest.
-    hu : ndarray, shape (P, R, C), optional
-        The CT: shows where skin ends and air begins.
-    spacing : ndarray, shape (3,), optional
-        Of the voxels, mm; wanted with `hu`.
 
     Returns
     -------
     ndarray of bool, shape (P, R, C)
-        The skull, and the large pieces whose middle lies in its bounding box and that no air parts from it.
+        The skull, and the large pieces whose middle lies in its bounding box.
 
     Examples
     --------
@@ -227,36 +275,9 @@ def drop_artefacts(
 
     # the skull is large and encloses much; a couch plate encloses little
     skull = max(large, key=lambda part: _n_voxels(boxes[part - 1]) * sizes[part])
-    kept = [part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]
-    if hu is not None and spacing is not None and len(kept) > 1:
-        middle = np.argwhere(labels[::4, ::4, ::4] == skull).mean(axis=0) * 4
-        kept = [p for p in kept if p == skull or not _is_beyond_air(labels, p, boxes[p - 1], middle, hu, spacing)]
     keep = np.zeros(n_parts + 1, bool)
-    keep[kept] = True
+    keep[[part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]] = True
     return keep[labels]
-
-
-def _is_beyond_air(
-    labels: NDArray,
-    part: int,
-    box: tuple[slice, ...],
-    middle: NDArray[np.float64],
-    hu: NDArray,
-    spacing: NDArray[np.float64],
-) -> bool:
-    """Whether air lies between the middle of the head and most of a piece: it stands outside the skin."""
-    at = np.argwhere(labels[box] == part) + [side.start for side in box]
-    at = at[:: max(1, len(at) // _LINES)]
-    # along the line from the middle to each voxel, every mm
-    away = (at - middle) * spacing
-    length = np.linalg.norm(away, axis=1)
-    along = np.arange(0.0, length.max(), 1.0)
-    index = np.rint(middle + (along[:, None, None] / length[:, None]) * (at - middle)).astype(np.intp)
-    index = np.clip(index, 0, np.array(hu.shape) - 1)
-    air = (hu[index[..., 0], index[..., 1], index[..., 2]] < AIR_HU) & (along[:, None] < length)
-    if air[along < _INSIDE_MM].mean() > 0.5:  # a dry skull is full of air
-        return False
-    return bool((air.sum(axis=0) >= _AIR_GAP_MM).mean() > 0.5)
 
 
 def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.bool_]:
@@ -302,3 +323,19 @@ def _n_voxels(box: tuple[slice, ...]) -> int:
 def _is_inside(inner: tuple[slice, ...], outer: tuple[slice, ...]) -> bool:
     """Whether the middle of one box lies within another."""
     return all(o.start <= (i.start + i.stop) / 2 <= o.stop for i, o in zip(inner, outer, strict=True))
+
+
+def _erode(mask: NDArray[np.bool_], width_mm: float, spacing: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Erosion by a box. The first and last slice go on beyond the image, for the scan ends within the body."""
+    mode = ["nearest", "constant", "constant"]
+    return ndimage.minimum_filter(mask.view(np.uint8), _box(width_mm, spacing), mode=mode).view(bool)
+
+
+def _dilate(mask: NDArray[np.bool_], width_mm: float, spacing: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Dilation by the same box."""
+    return ndimage.maximum_filter(mask.view(np.uint8), _box(width_mm, spacing), mode="nearest").view(bool)
+
+
+def _box(width_mm: float, spacing: NDArray[np.float64]) -> list[int]:
+    """Voxels along each axis of a box with a voxel in its middle."""
+    return [2 * int(width_mm / 2 / step_mm) + 1 for step_mm in spacing]

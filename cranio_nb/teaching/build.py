@@ -1,4 +1,4 @@
-"""Lessons run: notebooks made from their texts, compared with them, and graded when students hand them in.
+"""Lessons run: notebooks made from their texts, and compared with them.
 
 The texts (see `lesson_text`) are all that is edited. A notebook is made by running its text in static mode, so that
 it shows every picture where no kernel runs; the same text gives the same file, byte for byte.
@@ -7,7 +7,6 @@ it shows every picture where no kernel runs; the same text gives the same file, 
 from __future__ import annotations
 
 import os
-import re
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -23,9 +22,9 @@ from ..output.staging import replace_file
 from .lesson_text import METADATA, cell_ids, read_lesson, tags
 from .student_copy import exercise_copy
 
-_QUIET = {"CRANIO_NB_MODE": "static", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TQDM_DISABLE": "1"}
+QUIET = {"CRANIO_NB_MODE": "static", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TQDM_DISABLE": "1"}
+"""Environment of a kernel that runs lessons: pictures instead of panels, one thread, no progress bars."""
 _TIMEOUT = 300  # s for one cell
-_POINTS = re.compile(r"Exercise ([\d.]+): (\d+) of (\d+) points")
 
 
 def build(folder: Path, only: str = "") -> list[Path]:
@@ -131,7 +130,7 @@ def execute(notebook: NotebookNode) -> NotebookNode:
             resources={"metadata": {"path": folder}},
         )
         try:
-            client.execute(env={**os.environ, **_QUIET})
+            client.execute(env={**os.environ, **QUIET})
         except CellExecutionError as error:
             raise InputRefused("BadLesson", f"A cell fails that should not: {error.ename}: {error.evalue}") from None
     for cell in notebook.cells:
@@ -142,41 +141,6 @@ def execute(notebook: NotebookNode) -> NotebookNode:
             output.traceback = [f"{output.ename}: {output.evalue}"]  # without the places of files on this machine
     notebook.metadata = nbformat.from_dict(METADATA)
     return notebook
-
-
-def points(path: Path) -> dict[str, tuple[int, int]]:
-    """Run a notebook that a student hands in, and read off its checks.
-
-    Cells that fail count for nothing and do not stop the rest.
-
-    Parameters
-    ----------
-    path : path
-
-    Returns
-    -------
-    dict of str to (int, int)
-        Number of the exercise -> points, and points to be had.
-
-    Raises
-    ------
-    InputRefused
-        ``NotFound``.
-    """
-    if not path.is_file():
-        raise InputRefused("NotFound", f"There is no notebook {path.name}.")
-    notebook = nbformat.read(path, as_version=4)
-    with tempfile.TemporaryDirectory() as folder:
-        resources = {"metadata": {"path": folder}}
-        client = NotebookClient(
-            notebook, timeout=_TIMEOUT, kernel_name="python3", allow_errors=True, resources=resources
-        )
-        client.execute(env={**os.environ, **_QUIET})
-    shown = [
-        output.get("data", {}).get("text/plain", "") for cell in notebook.cells for output in cell.get("outputs", ())
-    ]
-    found = (_POINTS.match(line) for line in shown)
-    return {hit[1]: (int(hit[2]), int(hit[3])) for hit in found if hit}
 
 
 def _notebooks(folder: Path, only: str) -> Iterator[tuple[Path, NotebookNode]]:
@@ -193,7 +157,11 @@ def _sources(folder: Path, only: str) -> list[Path]:
     found = sorted((folder / "src").glob(f"{only}*.py"))
     if not found:
         message = f"No lesson texts were found in {folder.name}/src."
-        raise InputRefused("NoLessons", message, "Run this in the project's folder, or name the folder of notebooks.")
+        raise InputRefused(
+            "NoLessons",
+            message,
+            "The texts are in the project's repository: run this there, or name its folder of notebooks.",
+        )
     return found
 
 

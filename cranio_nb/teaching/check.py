@@ -1,62 +1,43 @@
-"""A student's function comes in -> one line goes out: points, what is wrong in mm, and a hint if one is asked for.
+"""A student's function comes in -> one line goes out: points, the cause of what is wrong, a hint if one is asked for.
 
 In a lesson::
 
     check.exercise("4.2", my_pressure)
     check.exercise("4.2", my_pressure, hint=1)
 
-A check never raises: whatever the function does becomes a sentence. It never keeps anything either: the same function
-gets the same line.
+A check never raises and never hangs: whatever the function does becomes a sentence. It never keeps anything either: the
+same function gets the same line.
 """
 
 from __future__ import annotations
 
 import copy
+import operator
 from collections.abc import Callable
-from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
 
+from .diagnosis import diagnose, error_of
 from .exercises import EXERCISES, Exercise
+from .rules import Trial
+from .side_by_side import side_by_side
+from .time_limit import TookTooLongError, call_within
+from .verdict import Verdict
 
-_STUB = "Nothing here yet: replace the line with NotImplementedError by your own, then run both cells again."
+LIMIT_S = 10.0
+"""Time that a function gets for a case; right answers take a hundredth of a second."""
+STUB = "Nothing here yet: replace the line with NotImplementedError by your own, then run both cells again."
+"""What is said to those who have not begun."""
+_STOPPED: dict[type[BaseException], str] = {
+    RecursionError: "The function calls itself without end: when should it stop?",
+    MemoryError: "The function wants more memory than there is: what grows without end?",
+}
 
 
-@dataclass(frozen=True)
-class Verdict:
-    """What a check found; shown as one line.
-
-    Parameters
-    ----------
-    name : str
-        Number of the exercise.
-    points, out_of : int
-        Cases answered rightly, and cases tried.
-    message : str
-    hint : str
-        Empty unless one was asked for.
-    """
-
-    name: str
-    points: int
-    out_of: int
-    message: str
-    hint: str = ""
-
-    @property
-    def passed(self) -> bool:
-        """Whether every case is right.
-
-        Returns
-        -------
-        bool
-        """
-        return self.out_of > 0 and self.points == self.out_of
-
-    def __repr__(self) -> str:
-        line = f"Exercise {self.name}: {self.points} of {self.out_of} points. {self.message}"
-        return f"{line} {self.hint}".rstrip()
+class _NoAnswerError(Exception):
+    """The function gave nothing that can be judged; the words say why."""
 
 
 def exercise(name: str, answer: Callable[..., Any], *, hint: int = 0) -> Verdict:
@@ -77,90 +58,106 @@ def exercise(name: str, answer: Callable[..., Any], *, hint: int = 0) -> Verdict
 
     Examples
     --------
-    >>> exercise("4.1", lambda k, n: k * n**2 / 8)
-    Exercise 4.1: 0 of 3 points. N counts the steps between snaxels: N = n - 1. (Ask for a hint with hint=1.)
+    >>> print(exercise("4.1", lambda k, n: k * n**2 / 8).message)
+    N counts the steps between snaxels: N = n - 1.
     """
     task = EXERCISES.get(str(name))
     if task is None:
         return Verdict(str(name), 0, 0, f"There is no such exercise; there are {', '.join(EXERCISES)}.")
-    cases = task.cases()
-    points, message = _judge(task, answer, cases)
-    return Verdict(str(name), points, len(cases), message, "" if points == len(cases) else _hint(task, hint))
+    cases, right = _tried(str(name))
+    try:
+        found = _answers(answer, cases)
+    except _NoAnswerError as error:
+        return Verdict(str(name), 0, len(cases), str(error), hint=_hint(task, hint))
+    # a point for each case whose answer is near enough to the right one
+    good = [error_of(task, yours, mine) <= task.answer.tolerance for yours, mine in zip(found, right, strict=True)]
+    if all(good):
+        return Verdict(str(name), len(cases), len(cases), f"Right: {task.praise}")
+    wrong = good.index(False)
+    compared = f"{_called(cases, wrong)}: {_compared(task, found[wrong], right[wrong])}."
+    return Verdict(
+        str(name),
+        sum(good),
+        len(cases),
+        diagnose(task, Trial(answer, cases, right, found)),
+        compared,
+        _hint(task, hint),
+    )
 
 
-def _judge(task: Exercise, answer: Any, cases: list[tuple[Any, ...]]) -> tuple[int, str]:
-    """Points, and what to say about the answer."""
+@cache
+def _tried(name: str) -> tuple[list[tuple[Any, ...]], list[Any]]:
+    """The cases of an exercise and the right answers to them; they take longer to make than to check."""
+    cases = EXERCISES[name].cases()
+    return cases, [EXERCISES[name].right(*case) for case in cases]
+
+
+def _answers(answer: Any, cases: list[tuple[Any, ...]]) -> list[Any]:
+    """The answer to each case, on copies; refused with the reason where there is none."""
     if not callable(answer):
-        return 0, f"A function is wanted, and this is a {type(answer).__name__}: give its name without brackets."
-    # the answer to each case, on copies
+        raise _NoAnswerError(
+            f"A function is wanted, and this is a {type(answer).__name__}: give its name without brackets."
+        )
     found = []
     for case in cases:
         given = copy.deepcopy(case)
-        try:
-            found.append(answer(*given))
-        except NotImplementedError:
-            return 0, _STUB
-        except (Exception, SystemExit) as error:
-            return 0, f"The function stopped with {type(error).__name__}: {_first_line(error)}"
-        if not _unchanged(given, case):
-            return 0, "The function changes the array it is given; work on a copy."
+        found.append(_answer(answer, given))
+        if not all(_same(a, b) for a, b in zip(given, case, strict=True)):
+            raise _NoAnswerError("The function changes what it is given; work on a copy.")
     if all(value is None for value in found):
-        return 0, "The function returns nothing: is there a `return`?"
-    # a point for each that is near enough to the right one
-    errors = [_error(task, value, task.right(*case)) for value, case in zip(found, cases, strict=True)]
-    points = sum(error <= task.answer.tolerance for error in errors)
-    return points, _say(task, cases, found, errors)
+        raise _NoAnswerError("The function returns nothing: is there a `return`?")
+    return found
 
 
-def _say(task: Exercise, cases: list[tuple[Any, ...]], found: list[Any], errors: list[float]) -> str:
-    """The sentence: praise, the typical mistake that gives just these answers, or how far off they are."""
-    # right; else a known mistake that gives the same answers; else the distance
-    worst, wanted = max(errors), task.answer
-    if worst <= wanted.tolerance:
-        return f"Right: {task.praise}"
-    for mistake, sentence in task.mistakes:
-        apart = (_error(task, value, mistake(*case)) for value, case in zip(found, cases, strict=True))
-        if all(error <= wanted.tolerance for error in apart):
-            return sentence
-    if not all(_finite(value) for value in found):
-        return (
-            "There is NaN or infinity in the answer, not a finite number: which step has no result (arcsin, sqrt, / 0)?"
-        )
-    if np.isinf(worst):
-        return f"The answer does not have the right form: {wanted.form}."
-    unit = f" {wanted.unit}" if wanted.unit else ""
-    return f"Not yet: off by up to {worst:.2g}{unit}, where {wanted.tolerance:.2g}{unit} is allowed."
-
-
-def _finite(value: Any) -> bool:
-    """Whether an answer holds neither NaN nor infinity; what is no number counts as finite."""
+def _answer(answer: Callable[..., Any], given: tuple[Any, ...]) -> Any:
+    """What the function returns in its time."""
     try:
-        return bool(np.isfinite(np.asarray(value, float)).all())
-    except (TypeError, ValueError):
-        return True
+        with np.errstate(all="ignore"):  # what is no number is told below, whatever numpy says
+            return call_within(LIMIT_S, answer, *given)
+    except TookTooLongError:
+        words = f"The function did not end within {LIMIT_S:g} s: is there a loop that never stops?"
+        raise _NoAnswerError(words) from None
+    except (Exception, SystemExit) as error:
+        if type(error) is NotImplementedError:  # and none of its kinds, which say something else
+            raise _NoAnswerError(STUB) from None
+        words = f"The function stopped with {type(error).__name__}: {_first_line(error)}"
+        raise _NoAnswerError(_STOPPED.get(type(error), words)) from None
 
 
-def _error(task: Exercise, value: Any, wanted: Any) -> float:
-    """How far two answers lie apart; inf where they cannot be compared."""
+def _called(cases: list[tuple[Any, ...]], number: int) -> str:
+    """A case by its numbers, where it is made of numbers only; else by its place."""
+    case = cases[number]
+    if all(isinstance(value, int | float) for value in case):
+        return f"Given ({', '.join(f'{value:.4g}' for value in case)})"
+    return f"Case {number + 1}"
+
+
+def _compared(task: Exercise, yours: Any, mine: Any) -> str:
+    """The student's answer beside the right one, as the exercise shows them."""
+    if task.answer.shows is None:
+        return side_by_side(yours, mine, task.answer.unit)
+    show, unit = task.answer.shows
     try:
-        error = float(task.answer.error(value, wanted))
-    except Exception:
-        return float("inf")
-    return error if np.isfinite(error) else float("inf")
+        return side_by_side(show(yours), show(mine), unit)
+    except Exception:  # whatever a function of ours meets in an answer of any form
+        return side_by_side(yours, mine)
 
 
-def _hint(task: Exercise, stage: int) -> str:
+def _hint(task: Exercise, stage: Any) -> str:
     """The hint of a stage, or how to get one."""
-    if stage <= 0:
-        return "(Ask for a hint with hint=1.)"
-    stage = min(stage, len(task.hints))
-    return f"Hint {stage} of {len(task.hints)}: {task.hints[stage - 1]}"
+    n = len(task.hints)
+    try:
+        at = min(operator.index(stage), n)
+    except TypeError:
+        return f"(A hint is asked for by a whole number: hint=1, up to hint={n}.)"
+    return f"Hint {at} of {n}: {task.hints[at - 1]}" if at > 0 else "(Ask for a hint with hint=1.)"
 
 
-def _unchanged(given: tuple[Any, ...], case: tuple[Any, ...]) -> bool:
-    """Whether the arrays among the arguments are what they were."""
-    pairs = [(a, b) for a, b in zip(given, case, strict=True) if isinstance(b, np.ndarray)]
-    return all(a.shape == b.shape and np.array_equal(a, b) for a, b in pairs)
+def _same(given: Any, case: Any) -> bool:
+    """Whether an argument is what it was."""
+    if isinstance(case, np.ndarray):
+        return given.shape == case.shape and np.array_equal(given, case)
+    return bool(given == case)
 
 
 def _first_line(error: BaseException) -> str:

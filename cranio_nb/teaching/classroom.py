@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from skimage.morphology import skeletonize
 
+from ..curves import GapEnds
 from ..errors import InputRefused
 from ..opening import Opening
 from ..readers import read_ct
@@ -231,14 +232,39 @@ def bridged_plane(bone: Volume, opening: Opening, *, skip_px: float, reach_px: f
     first, end = opening.planes
     for plane in sorted(range(first, end), key=lambda p: abs(p - (first + end) // 2)):
         with suppress(feature_extraction.SliceProblem):
-            seen = feature_extraction.extract_features(bone.voxels[plane])
-            feature_extraction.find_gap_ends(seen, opening.sheet.voxels[plane], skip_px=skip_px, reach_px=reach_px)
+            gap_ends(bone, opening, plane, skip_px=skip_px, reach_px=reach_px)
             return plane
     raise InputRefused(
         "NoAxialGap",
         "In no slice of this scan can both ends of the gap be seen.",
         "This lesson cuts as the paper does, along the scan's own slices: take a hole in the side of the head.",
     )
+
+
+def gap_ends(bone: Volume, opening: Opening, plane: int, *, skip_px: float, reach_px: float) -> tuple[GapEnds, GapEnds]:
+    """The ends of an opening's gap in one plane: both steps of the stage, features and ends, in one.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask.
+    opening : Opening
+    plane : int
+    skip_px, reach_px : float
+        As for `feature_extraction.find_gap_ends`, px.
+
+    Returns
+    -------
+    outer, inner : GapEnds
+        (row, col) px.
+
+    Raises
+    ------
+    SliceProblem
+        Where the plane has no gap with two ends.
+    """
+    seen = feature_extraction.extract_features(bone.voxels[plane])
+    return feature_extraction.find_gap_ends(seen, opening.sheet.voxels[plane], skip_px=skip_px, reach_px=reach_px)
 
 
 def skeleton(mask: NDArray[np.bool_]) -> NDArray[np.intp]:

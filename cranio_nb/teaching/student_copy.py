@@ -15,7 +15,8 @@ from .lesson_text import make_notebook, tags
 
 _TO_STUDENTS = (
     "*This is the copy to work in. Run the cells from the top. Where you meet `raise NotImplementedError`, put your "
-    "own lines in its place, then run the check below it. Solutions and expected pictures are folded away: try first.*"
+    "own lines in its place, then run the check below it. Solutions and expected pictures are folded away: try first. "
+    "The whole lesson, solved, is the notebook of the same name in the folder above.*"
 )
 _NUMBER = re.compile(r"check\.exercise\(\"(\d+\.\d+)\"")
 
@@ -42,13 +43,28 @@ def exercise_copy(lesson: NotebookNode) -> NotebookNode:
         text = cell.source
         if "solution" in tags(cell):
             solution, text = text, make_stub(text, exercise_number(lesson.cells, cell))
-        copy = new_code_cell(text, metadata=_student_tags(cell))
-        cells.append(copy)
-        if "expected" in tags(cell):
-            cells.append(_expected(cell))
+        cells += student_cells(cell, text)
         if "check" in tags(cell):
             cells.append(_folded("Solution", f"```python\n{solution}\n```"))
     return make_notebook(cells)
+
+
+def student_cells(cell: NotebookNode, text: str) -> list[NotebookNode]:
+    """A cell of code as a student gets it: without outputs, with the expected picture folded away below it.
+
+    Parameters
+    ----------
+    cell : NotebookNode
+        Of the executed lesson.
+    text : str
+        What stands in it for the student.
+
+    Returns
+    -------
+    list of NotebookNode
+    """
+    copy = new_code_cell(text, metadata=_student_tags(cell))
+    return [copy, _expected(cell)] if "expected" in tags(cell) else [copy]
 
 
 def exercise_number(cells: Sequence[NotebookNode], solution: NotebookNode) -> str:
@@ -99,10 +115,31 @@ def make_stub(solution: str, number: str) -> str:
         "Two times x."
         raise NotImplementedError("Exercise 4.1")
     """
+    head, _ = split_solution(solution)
+    return f'{head}\n    raise NotImplementedError("Exercise {number}")'
+
+
+def split_solution(solution: str) -> tuple[str, str]:
+    r"""Head and docstring of a solution's function, and its body.
+
+    Parameters
+    ----------
+    solution : str
+        Text of one function with a docstring.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> split_solution('def twice(x):\n    "Two times x."\n    return 2 * x')
+    ('def twice(x):\n    "Two times x."', '    return 2 * x')
+    """
     (function,) = ast.parse(solution).body
     assert isinstance(function, ast.FunctionDef)
-    head = solution.splitlines()[: function.body[0].end_lineno]
-    return "\n".join([*head, f'    raise NotImplementedError("Exercise {number}")'])
+    lines, end = solution.splitlines(), function.body[0].end_lineno
+    return "\n".join(lines[:end]), "\n".join(lines[end:])
 
 
 def _student_tags(cell: NotebookNode) -> dict[str, Any]:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ..grid import inside_grid
+from ..grid import touched
 from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
@@ -159,8 +159,4 @@ def _sheet(bone: Volume, outermost: OutermostBone, rays: NDArray[np.bool_], radi
     )
     depths = np.arange(0.0, 4.5, 0.5)
     points = grid.centre + directions[:, None, :] * (lengths - depths)[..., None]
-    index = bone.to_voxel(points.reshape(-1, 3))
-    index = np.rint(index[inside_grid(index, bone.shape)]).astype(np.intp)
-    voxels = np.zeros(bone.shape, bool)
-    voxels[tuple(index.T)] = True
-    return bone.with_voxels(voxels & ~bone.voxels)
+    return bone.with_voxels(touched(bone.to_voxel(points.reshape(-1, 3)), bone.shape) & ~bone.voxels)

@@ -30,7 +30,7 @@ class OpeningSize:
     lowest : float
         World z of its lowest place, mm.
     place : str
-        Where it lies on the head, e.g. "left, top".
+        Where it lies on the head, e.g. "left, top"; by the axes of the scan where those of the head are not known.
     """
 
     planes: tuple[int, int]
@@ -70,7 +70,7 @@ def measure_opening(opening: Opening) -> OpeningSize:
         tuple(centre.tolist()),
         tuple(out.tolist()),
         float(points[:, 2].min()),
-        name_place(out),
+        name_place(out if opening.head_axes is None else opening.head_axes @ out),
     )
 
 
@@ -80,7 +80,7 @@ def name_place(direction: Sequence[float] | np.ndarray) -> str:
     Parameters
     ----------
     direction : array_like, shape (3,)
-        Unit vector, LPS.
+        Unit vector along the head's left, back and up.
 
     Returns
     -------

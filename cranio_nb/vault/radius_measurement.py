@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from ..errors import InputRefused
 from ..geometry.robust import huber_weights, reweighted_fit, spread
-from ..grid import inside_grid
+from ..grid import touched
 from ..opening import Opening
 from ..volume import Volume
 from .ray_casting import expected_radius, surface_radii
@@ -122,11 +122,7 @@ def _axes(opening: Opening, bone: Volume) -> NDArray[np.float64]:
 
 def _rays_to(grid: RayGrid, points: NDArray[np.float64]) -> NDArray[np.bool_]:
     """The rays that pass through an opening's sheet, given by points (n, 3) from the grid's centre."""
-    at = grid.locate(points).T
-    v, u = np.rint(at[inside_grid(at, (grid.n, grid.n))]).astype(np.intp).T
-    rays = np.zeros((grid.n, grid.n), bool)
-    rays[v, u] = True
-    return ndimage.binary_closing(rays, iterations=2)
+    return ndimage.binary_closing(touched(grid.locate(points).T, (grid.n, grid.n)), iterations=2)
 
 
 def _radii(

@@ -28,18 +28,17 @@
 #
 # | stage | in | out | lesson |
 # |---|---|---|---|
-# | 1 segmentation | CT in HU | bone mask | 01, 02 |
-# | 2 feature extraction | bone of one slice | ends of the gap and their tangents | 03 |
-# | 3 deformable model | ends and tangents | outer and inner curve across the gap | 04 |
-# | 4 prosthesis volume | curves | patch of voxels | 05 |
-# | 5 surface reconstruction | patch | closed triangle mesh | 06 |
-# | and afterwards | mesh and truth | how good is it? what else closes it? | 07 to 10 |
+# | 1 segmentation | CT in HU | bone mask | lessons 01, 02 |
+# | 2 feature extraction | bone of one slice | ends of the gap and their tangents | lesson 03 |
+# | 3 deformable model | ends and tangents | outer and inner curve across the gap | lesson 04 |
+# | 4 prosthesis volume | curves | patch of voxels | lesson 05 |
+# | 5 surface reconstruction | patch | closed triangle mesh | lesson 06 |
+# | and afterwards | mesh and truth | how good is it? what else closes it? | lessons 07 to 10 |
 
 # %%
 import numpy as np
 
 import cranio_nb as cn
-from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import check, classroom, widgets
 
 # %% [markdown]
@@ -47,7 +46,7 @@ from cranio_nb.teaching import check, classroom, widgets
 #
 # `classroom.load` makes a synthetic head with a hole, so you need no data and no network. It is a simple head: skin,
 # skull and brain, without a face. A CT is a box of numbers in **Hounsfield units** (HU): air is -1000, water 0, bone
-# about 300 and more.
+# several hundreds and more. Each value is measured with some noise, so single voxels of air lie below -1000.
 #
 # *The switch:* `"class"` takes seconds; `"full"` is the size of the paper's scan (512 x 512 x 68);
 # `classroom.load(scan="path/to/your/scan")` takes your own (DICOM folder, NIfTI or NRRD).
@@ -56,7 +55,8 @@ from cranio_nb.teaching import check, classroom, widgets
 case = classroom.load("class")
 ct = case.ct
 print(f"{ct.shape} voxels (planes, rows, columns), {np.round(ct.spacing, 2)} mm apart")
-print(f"from {ct.voxels.min()} to {ct.voxels.max()} HU")
+print(f"from {ct.voxels.min()} to {ct.voxels.max()} HU", end=" ")
+print(f"(air, in a corner: {ct.voxels[:, :9, :9].mean():.0f} on average)")
 
 # %% tags=["nbval-check-output"]
 viewer = widgets.ct_viewer(ct)
@@ -72,8 +72,8 @@ viewer
 #
 # ## 2. Bone (stage 1)
 #
-# Everything from 400 HU up is bone: we take the paper's 400 and not 300, and lesson 02 asks what difference it makes.
-# Then the couch and loose specks are dropped and small holes are closed.
+# Everything from 400 HU up is bone: so the paper has it, and lesson 02 asks what difference the number makes. Then the
+# couch and loose specks are dropped and small holes are closed.
 
 # %% tags=["nbval-check-output"]
 bone = cn.segment(ct, threshold=400)
@@ -106,10 +106,7 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10
 follow = {"skip_px": 3, "reach_px": 10}
 plane = classroom.bridged_plane(bone, openings[0], **follow)  # a slice with both ends
-seen = feature_extraction.extract_features(
-    bone.voxels[plane]
-)  # the bone's boundary and middle line
-outer, inner = feature_extraction.find_gap_ends(seen, openings[0].sheet.voxels[plane], **follow)
+outer, inner = classroom.gap_ends(bone, openings[0], plane, **follow)
 # any point in the head: the balloon must know which way is out
 inside = bone.to_voxel(openings[0].head_centre)[1:]
 truth = next(iter(case.true_curves(plane)), None)  # None for a scan of your own
@@ -128,9 +125,9 @@ player.set(preset="tangent pressure: k from the ends", step=300)
 #
 # The paper's pressure is the same for every gap, and for this one it is too weak: the curve comes out too flat, 3.8 px
 # high instead of 7.2. With k = -0.1 the wind blows the other way, and the curve sinks below the chord. The clamp at
-# each end holds the tangent over one or two snaxels (the dots of the curve) only; further on the wind wins. So the
-# curve becomes a flat S: next to the steeper end it is still 0.6 px above the chord, and further on 2.8 px below. The
-# energy falls at first (from 165.5 to 159.6 px2, step 20) and then *rises* (to 160.3): energy is what the bent and stretched
+# each end holds the tangent over about one snaxel (a dot of the curve) only; further on the wind wins. So the curve
+# becomes a flat S: next to the steeper end it is still 0.6 px above the chord, and further on 2.8 px below. The energy
+# falls at first (from 165.5 to 159.6 px2, step 20) and then *rises* (to 160.3): energy is what the bent and stretched
 # curve holds, and the wind does work on it. Lesson 04 has this account, and tells which `k` fits and why.
 #
 # </details>
@@ -158,7 +155,8 @@ print(
 # ## 6. How good is it?
 #
 # For a synthetic head we know the bone that is missing. **Dice** says how well two masks overlap (1 is perfect). The
-# **95th percentile of the surface distance** says how far apart the surfaces are, in mm, leaving out the worst 5 %.
+# **95th percentile of the surface distance** says how far apart the surfaces are, in mm, leaving out the worst one in
+# twenty.
 
 # %% tags=["nbval-check-output"]
 if case.truth is not None:
@@ -169,8 +167,8 @@ if case.truth is not None:
 cn.show(bone, prosthesis)
 
 # %% [markdown]
-# *In a live notebook you can turn this head with the mouse.* Its top is flat because the slices are 2.5 mm apart: the
-# highest slice with bone is a disc, and there is nothing between it and the next.
+# *In a live notebook you can turn this head with the mouse.* Its top is flat because the slices are 2.5 mm apart
+# (section 1): the highest slice with bone is a disc, and there is nothing between it and the next.
 #
 # That is the whole way: a scan went in, a solid came out. The rest of the course asks at each step: *why does this
 # work, when does it fail, and how do we know?*

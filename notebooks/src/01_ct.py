@@ -73,14 +73,15 @@ print(f"{ct.shape} voxels of {np.round(ct.spacing, 2)} mm")
 # %% [markdown]
 # ## 3. Windowing
 #
-# HU span some 4000 values; an eye tells perhaps 100 greys apart. So we choose a **window**: below centre - width / 2
-# all is black, above centre + width / 2 all is white.
+# A scan holds thousands of different HU, a picture 256 greys (this scan's number is printed below). So we choose a
+# **window**: below centre - width / 2 all is black, above centre + width / 2 all is white.
 #
 # **Predict, then move, then explain.** Where do you put centre and width to see (a) only bone, (b) the brain against
 # the skin? Try it, with the sliders or in a new cell with `viewer.set(centre=300, width=1500)` and your numbers.
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
+print(f"{np.unique(case.ct.voxels).size} different HU; {2**8} greys in a picture of 8 bits")
 viewer = widgets.ct_viewer(case.ct)
 viewer
 
@@ -149,8 +150,9 @@ position = np.array(one.ImagePositionPatient, float)
 print(f"normal {normal}, height of the first file's slice {position @ normal:.2f} mm")
 
 # %% [markdown]
-# Do not take `SliceThickness` for this distance. In our files both are 2.5 mm, but a scanner may measure slices 5 mm
-# thick every 2.5 mm, so that they overlap, or slices 1.25 mm thick every 2.5 mm, with gaps between them.
+# Do not take `SliceThickness` for this distance. In our files both are 2.5 mm (section 1), but a scanner may
+# measure slices that are twice as thick as they lie apart, so that they overlap, or half as thick, with gaps between
+# them.
 #
 # ## 5. Breaking it
 #
@@ -260,7 +262,7 @@ check.exercise("1.2", to_world)
 # %% [markdown]
 # **Exercise 1.3.** The distance between slices. You get the positions (n, 3) of the slices in mm, in the order of the
 # files (any order), and the unit normal of the slices (section 4). Return the median distance between neighbours. Why
-# the median? One slice may be missing, and the others should not pay for it.
+# the median? One slice may be missing and another too close to its neighbour, and the rest should not pay for them.
 
 
 # %% tags=["solution"]

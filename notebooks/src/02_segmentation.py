@@ -40,13 +40,17 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # | `threshold` | lowest HU of bone | HU | 400 |
 # | `upper` | highest HU of bone | HU | 1000 (we set none) |
 # | `max_hole_mm2` | holes up to this area are filled (`max_hole_px` in `segmentation.fill_holes`) | mm2 | not given |
-# | `min_part` | loose parts under this share of the skull go | share, e.g. 0.02 | not given |
+# | `min_part` | loose parts under this share of the skull go | share, e.g. a fiftieth | not given |
+#
+# The synthetic head is made of hard bone of 1200 HU, spongy bone of 650 HU and soft tissue of 50 HU
+# (`data_synth.phantom`).
 #
 # *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
 
-# %%
+# %% tags=["nbval-check-output"]
 case = classroom.load("class")
 ct, px = case.ct, case.px
+print(f"a pixel is {px:.1f} mm wide")
 
 # %% [markdown]
 # ## 1. The threshold
@@ -64,10 +68,10 @@ panel
 #
 # The inside. A skull bone is a sandwich: two hard plates (about 1200 HU here) around spongy **diploe** (about 650 HU).
 # The outline moves slowly, by part of a voxel: 0.3 mm from 400 to 625 HU (section 2; a pixel is 0.9 mm). Inside, holes
-# begin to open near 500 HU, where the softest voxels of the diploe go first, but you do not see them, for they are small and filled (the caption counts them: 1, 29
-# and 269 mm2 at 400, 500 and 625 HU). Between 625 and 800 HU all the diploe goes: the holes run together, become larger
-# than what is filled, and two shells remain. (The caption still says 1 piece: bridges remain between the shells, at the
-# rim of the hole and where the diploe is dense.)
+# begin to open near 500 HU, where the softest voxels of the diploe go first, but you do not see them, for they are
+# small and filled (the caption counts them: 1, 29 and 269 mm2 at 400, 500 and 625 HU). Between 625 and 800 HU all the
+# diploe goes: the holes run together, become larger than what is filled, and two shells remain. (The caption still says
+# 1 piece: bridges remain between the shells, at the rim of the hole and where the diploe is dense.)
 #
 # </details>
 #
@@ -80,6 +84,7 @@ for level in (400, 500, 550, 625, 700, 800):
     filled = segmentation.fill_holes(raw[None], max_hole_px=60 / px**2)[0]
     print(f"{level} HU: {raw.sum() * px**2 / 100:4.1f} cm2 of bone before filling,", end=" ")
     print(f"holes of {(filled ^ raw).sum() * px**2:3.0f} mm2 filled")
+print(widgets.threshold(ct).set(threshold_hu=800).view.line)
 
 # %% [markdown]
 # ## 2. Partial volume
@@ -108,6 +113,8 @@ if case.phantom is not None:
     for level, volume in zip(levels[2:5], volumes[2:5], strict=True):
         extra = 1000 * volume - true.voxels.sum() * true.voxel_volume
         print(f"{level} HU: each surface lies {extra / area:+.2f} mm outward")
+    moved = 1000 * (volumes[2] - volumes[4]) / area
+    print(f"from 400 to 625 HU each surface moves by {moved:.1f} mm")
 
 # %% [markdown]
 # **Question.** The best threshold here is not 400. Should the package change its default?
@@ -116,7 +123,7 @@ if case.phantom is not None:
 # <summary>Answer</summary>
 #
 # Not because of this table: every synthetic skull has the same two kinds of bone (1200 and 650 HU), real skulls do not.
-# Thin or old bone may stay under 600 HU, and a hole in the mask that is not a hole in the bone costs more than the
+# Thin or old bone may stay far under both, and a hole in the mask that is not a hole in the bone costs more than the
 # 0.3 mm on each surface that 400 HU costs here.
 #
 # </details>
@@ -126,8 +133,8 @@ if case.phantom is not None:
 # Some voxels of the diploe fall under the threshold and leave holes inside the bone. The paper fills them. But
 # mind *which* holes: the head itself is the largest hole of all.
 #
-# At 400 HU there are only a few such holes in this head. To see many, we take 700 HU here, just above the diploe. The
-# picture shows a piece of 40 x 40 mm.
+# At 400 HU there are only a few such holes in this head (section 1). To see many, we take 700 HU here, just above the
+# diploe. The picture shows a piece of 40 x 40 mm.
 
 # %%
 plane = max(cn.find_openings(masks[2])[0].planes[0] - 4, 0)  # below the hole the ring is closed
@@ -140,9 +147,9 @@ front = np.argwhere(raw[plane])[:1]  # the first bone pixel from the top
 fig, (left, right) = pictures.axes(2, height=4.2)
 pictures.show_hu(left, ct.voxels[plane], px=px, title="CT")
 pictures.show_mask(right, raw[plane], px=px)
-pictures.show_mask(right, added, px=px, colour="#D55E00", title="700 HU; filled in red")
+pictures.show_mask(right, added, px=px, colour="#D55E00", title="700 HU; filled: orange-red")
 for ax in (left, right):
-    pictures.zoom(ax, [front], px=px, margin=20)
+    pictures.zoom(ax, [front], px=px, margin=40 / 2)
 alt = "Left: the front of a skull in CT. Right: its bone above 700 HU, many small holes filled."
 pictures.picture(fig, alt, f"{added.sum()} pixels filled in the whole of plane {plane}")
 
@@ -182,7 +189,7 @@ bright = segmentation.apply_threshold(lying.ct.voxels, 400)
 kept = segmentation.drop_artefacts(bright)
 fig, (ax,) = pictures.axes(height=4.2, width=5.0)
 pictures.show_mask(ax, bright[level], px=lying.px, colour="#D55E00")
-pictures.show_mask(ax, kept[level], px=lying.px, title="skull kept, couch dropped (red)")
+pictures.show_mask(ax, kept[level], px=lying.px, title="skull kept, couch dropped (orange-red)")
 alt = "A ring of bone, and behind it a curved plate in another colour that is dropped."
 parts = ndimage.label(bright)[1]
 pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} after")
@@ -226,9 +233,10 @@ if case.truth is not None:
 # <details>
 # <summary>Answer</summary>
 #
-# From the mask alone it was cut: a hole in the vault with a single wall around it. The HU show the bone. Its thickness
-# across the hole is the excess of the HU over those of the brain, summed along a ray and divided by the excess of solid
-# bone: partial volume, as in section 2, used the other way round. So give the scan wherever you have it.
+# From the mask alone it was cut: a hole in the vault (the dome of the skull) with a single wall around it. The HU show
+# the bone. Its thickness across the hole is the excess of the HU over those of the brain, summed along a ray and
+# divided by the excess of solid bone: partial volume, as in section 2, used the other way round. So give the scan
+# wherever you have it.
 #
 # </details>
 #
@@ -274,7 +282,7 @@ check.exercise("2.2", fill_small_holes)
 fig, (ax,) = pictures.axes(height=4.0, width=5.0)
 mine = fill_small_holes(raw[plane], 70)
 pictures.show_mask(ax, mine, px=px, colour="#D55E00")
-pictures.show_mask(ax, raw[plane], px=px, title="your filled holes in red")
+pictures.show_mask(ax, raw[plane], px=px, title="your filled holes in orange-red")
 pictures.zoom(ax, [front], px=px, margin=20)
 alt = "The front of a skull; small spots in its thickness are filled, the brain's place is not."
 pictures.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")

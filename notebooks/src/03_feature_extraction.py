@@ -34,20 +34,24 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 #
 # | name | meaning | unit in the code | unit of the sliders | paper |
 # |---|---|---|---|---|
-# | `skip` | boundary left out next to the gap | `skip_px`, along the bone | mm | 10 points = 4.5 mm |
+# | `skip` | boundary left out next to the gap | `skip_px`, along the bone | mm | 10 points |
 # | `reach` | boundary that carries the tangent, after that | `reach_px`, along the bone | mm | not given |
 #
-# The paper's pixels are 0.45 mm, so its 10 points are 4.5 mm. In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are
-# 5 px here, and 10 px are 9 mm.
+# How long are 10 points? The paper does not tell the size of its pixels, only that a slice has 512 x 512 of them. A
+# scan of a head is about as wide as ours, and then they are 0.45 mm, and ten points 4.5 mm. **So this course takes
+# them.** In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are 5 px here, and 10 px are 9 mm.
 #
 # *The switch:* `"full"` for the paper's size, or `classroom.load(scan="path/to/your/scan")`.
 
-# %%
+# %% tags=["nbval-check-output"]
 case = classroom.load("class")
 bone = cn.segment(case.ct)
 opening = cn.find_openings(bone)[0]
 plane = classroom.bridged_plane(bone, opening, skip_px=5, reach_px=6)
 mask, px = bone.voxels[plane], case.px
+across = mask.shape[1] * px  # mm
+for whose, mm in (("our", px), ("512", across / 512)):
+    print(f"{whose} pixels over {across:.0f} mm: {mm:.2f} mm each, ten are {10 * mm:.1f} mm")
 
 # %% [markdown]
 # ## 1. Boundary, skeleton, hull
@@ -68,8 +72,8 @@ corners = spine[spatial.ConvexHull(spine).vertices]
 pictures.show_curve(left, spine, px=px, line=0, label="spine")
 pictures.show_curve(left, [*corners, corners[0]], px=px, line=1, label="hull S")
 left.legend(loc="center")
-pictures.show_points(right, seen.outer, px=px, colour="#0072B2", label="outer: B without S")
-pictures.show_points(right, seen.inner, px=px, colour="#D55E00", label="inner: B and S")
+pictures.show_points(right, seen.outer, px=px, colour="#0072B2", label="outer: B - S")
+pictures.show_points(right, seen.inner, px=px, colour="#D55E00", label="inner: B ∩ S")
 right.set(xlim=left.get_xlim(), ylim=left.get_ylim(), aspect="equal", xlabel="mm")
 right.legend(loc="center")
 alt = "Left: an open ring of bone, its middle line and hull. Right: its two boundaries."
@@ -80,13 +84,13 @@ pictures.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.inn
 # <summary>Answer</summary>
 #
 # The hull reaches out to the middle line. What lies further out than the middle line is outside: the outer boundary,
-# **B - S**. What lies further in is in the hull: the inner boundary, **B and S**. One convex hull parts the curves,
-# and nobody had to say where inside is. It works because a skull is nearly convex: a deep dent of the bone would end up
-# in the hull.
+# **B - S** (B without S). What lies further in is in the hull: the inner boundary, **B ∩ S** (what B and S share). One
+# convex hull parts the curves, and nobody had to say where inside is. It works because a skull is nearly convex: a deep
+# dent of the bone would end up in the hull.
 #
 # </details>
 #
-# *A slip worth knowing:* read literally, the paper's "B and S" with S a *curve* would be almost empty. S must be the
+# *A slip worth knowing:* read literally, the paper's B ∩ S with S a *curve* would be almost empty. S must be the
 # filled hull, as here.
 #
 # ## 2. The ends
@@ -94,10 +98,10 @@ pictures.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.inn
 # The gap ends where the skeleton ends. But a squarely cut bone has two corners there, and the skeleton forks into
 # both. Real bone adds spurs. So we take the **longest path** through the skeleton, measured along it. The path still
 # runs into one of the two corners. There it comes near the boundary: it is no longer in the middle. So we **cut off**
-# its end, up to the first point that lies as deep in the bone (at least 0.8 of it) as the path does further back.
+# its end, up to the first point that lies nearly as deep in the bone as the path does further back.
 
 # %%
-row, col = np.mgrid[-30:30, -30:30]
+row, col = np.mgrid[-30:30, -30:30]  # a bar of 50 x 11 px, turned by 20 degrees
 bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) <= 5)
 
 # %% tags=["nbval-check-output"]
@@ -120,14 +124,15 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used. The
 # thin **black line** is the line that was fitted: it goes through the mean of the pixels used. The **green arrow** has
 # its direction, but starts at the white circle. theta0 and theta1 of the caption are the angles between the outer
-# arrows and the chord, each with the one to expect there, which section 4 explains.
+# arrows and the chord, the straight line between their two circles, each with the one to expect there, which section 4
+# explains.
 #
 # **Predict, then move, then explain.** (No sliders? Use `panel.set(skip_mm=0)` in a new cell, and `reach_mm`, `plane`.)
 #
 # 1. Move `skip` to 0: what do the tangents do, and the white circles?
 # 2. Put `skip` back to 4.5 mm and `reach` to 6 mm, and step through the slices around this one. Then make `reach`
 #    smaller until the package refuses.
-# 3. Move `reach` to 40 mm: where does the black line leave the pixels?
+# 3. Move `reach` to 40 mm (44 px in section 4): where does the black line leave the pixels?
 
 # %% tags=["nbval-check-output"]
 panel = widgets.features(bone, plane, opening=opening.sheet, case=case)
@@ -139,8 +144,9 @@ panel
 #
 # 1. Pixels of the cut face join the fit and turn the line. The white circles move into the cut face: the gap seems
 #    narrower than it is (section 4 prints both lengths).
-# 2. A few pixels of a staircase: from slice to slice the angles jump by 5 degrees on average, and once by 15 (noise).
-#    With fewer than 4 pixels the package refuses to fit a line.
+# 2. A few pixels are a piece of a staircase, and show its step or its tread: from slice to slice the angles jump by 4
+#    degrees on average, and once by 13 (noise; section 4 prints it). With fewer than 4 pixels the package refuses to
+#    fit a line.
 # 3. The bone is curved, and the line is a chord of it: it leaves the pixels at both ends, and shows the direction in
 #    the *middle* of the neighbourhood, not at the end (bias).
 #
@@ -186,7 +192,8 @@ def expected(case, plane, length):
 
 
 # %% tags=["nbval-check-output"]
-settings = ((0, 10), (5, 10), (10, 10), (5, 6), (5, 25), (5, 44))  # 44 px are 40 mm
+settings = ((0, 10), (5, 10), (10, 10), (5, 6), (5, 25), (5, 44))
+print(f"44 px are {44 * px:.0f} mm")
 true_length, (true0, true1) = truth(case, plane)
 print(f"true gap: L {true_length:.1f} px, theta0 {true0:.1f}, theta1 {true1:.1f}")
 for skip, reach in settings:
@@ -233,29 +240,29 @@ for skip, reach in settings:
     scatters = " ".join(f"{e.std(axis=0).mean():4.1f}" for e in errors)
     slices = " ".join(f"{len(e):2}" for e in errors)
     print(f"skip {skip:2} px, reach {reach:2} px: {means}  {scatters}  {slices}")
-jumps = np.abs(np.diff(errors_near(*heads[0], 5, 6), axis=0))
-print(
-    f"reach 6 px, from one slice with a gap to the next: {jumps.mean():.0f} on average,",
-    end=" ",
-)
-print(f"at most {jumps.max():.0f}")
+
+# %% tags=["nbval-check-output"]
+jumps = [np.abs(np.diff(errors_near(*head, 5, 6 / px), axis=0)) for head in heads]
+print("reach 6 mm, from one slice with a gap to the next, each head (degrees):", end=" ")
+each = [f"{j.mean():.0f} on average, at most {j.max():.0f}" for j in jumps if j.size]
+print("; ".join(each))
 
 # %% [markdown]
 # With `reach` 6, 10, 25 px the scatter falls in each of the four heads, and from 10 to 25 px the mean error more than
 # doubles: that is the trade of noise against bias. With 44 px, the 40 mm of question 3, there is no less scatter and
-# twice the error again. (At 6 px the noise is too large to tell the bias, and some slices are refused, too.) With
-# `skip` = 0 the cut face adds an error of its own, larger and to the other side. From `skip` 5 to 10 px the angles grow
-# mostly because the gap is wider.
+# nearly twice the error again. (At 6 px the noise is too large to tell the bias, and some slices are refused, too.)
+# With `skip` = 0 the cut face adds an error of its own, larger and to the other side. From `skip` 5 to 10 px the angles
+# grow mostly because the gap is wider.
 #
 # **Question.** The paper leaves out "10 points". On a scan with pixels twice as large, is this the same?
 #
 # <details>
 # <summary>Answer</summary>
 #
-# No: 10 px of 0.9 mm are 9 mm, 10 px of 0.45 mm are 4.5 mm. The cut face is a part of the patient, and its depth should
-# be given in mm. The sliders above do so, and so do the options of `cn.design`. What it costs to count points instead
-# is measured in lesson 05. (`reach` is not as simple: the curvature of a skull is measured in mm, but the noise of a line
-# falls with the number of its points. The paper's 4.5 mm would be 5 px here, hardly enough for a line.)
+# No: ten points are twice as long there. The cut face is a part of the patient, and its depth should be given in mm.
+# The sliders above do so, and so do the options of `cn.design`. What it costs to count points instead is measured in
+# lesson 05. (`reach` is not as simple: the curvature of a skull is measured in mm, but the noise of a line falls with
+# the number of its points. A `reach` of 4.5 mm would be 5 px here, hardly enough for a line.)
 #
 # </details>
 #
@@ -323,7 +330,7 @@ check.exercise("3.3", arc_length)
 # %% [markdown]
 # ## Summary
 #
-# - The hull of the skeleton parts the boundary into outer (B - S) and inner (B and S).
+# - The hull of the skeleton parts the boundary into outer (B - S) and inner (B ∩ S).
 # - Ends come from the longest path of the skeleton; tangents from boundary pixels near them.
 # - `skip` keeps the cut face out. `reach` trades noise against bias.
 #
@@ -332,7 +339,7 @@ check.exercise("3.3", arc_length)
 # | B | `SliceFeatures.boundary` | px |
 # | skeleton | `SliceFeatures.skeleton` | px |
 # | S | `SliceFeatures.hull` | half-planes |
-# | B - S, B and S | `.outer`, `.inner` | px |
+# | B - S, B ∩ S | `.outer`, `.inner` | px |
 # | 10 points | `feature_extraction.PAPER_SKIP_PX` | px |
 # | theta0, theta1 | `ChordFrame.end_angles` | rad |
 #

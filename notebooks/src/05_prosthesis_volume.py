@@ -51,9 +51,9 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 # %% [markdown]
 # ## 1. Between the curves
 #
-# We run the paper's own preset and look at one slice. It leaves out 4.5 mm of boundary at the cut, ten points on the
-# paper's pixels of 0.45 mm. Over what length the tangent is fitted the paper does not say: the preset takes ten points
-# of ours, for a line through fewer would jump (lesson 03).
+# We run the paper's own preset and look at one slice. It leaves out 4.5 mm of boundary at the cut: the paper's ten
+# points, as lesson 03 takes them. Over what length the tangent is fitted the paper does not say: the preset takes ten
+# points of ours, for a line through fewer would jump (lesson 03).
 #
 # The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
 # `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the other: crumbs that touch only one of
@@ -61,6 +61,8 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 
 # %% tags=["nbval-check-output"]
 paper = cn.design(bone, openings, preset="paper")
+preset = cn.methods.slicewise.method.paper_options(bone)
+print(f"skip {preset['skip_mm']} mm, reach {preset['reach_mm']:.1f} mm")
 made = paper.working[0].slices  # the slices of the first hole
 bridged = [s for s in made if s.status == "balloon"]
 one = bridged[len(bridged) // 2]
@@ -138,7 +140,8 @@ pictures.picture(fig, alt, f"patch {found.sum()} px, missing {lost[at].sum()} px
 #
 # ## 3. All slices
 #
-# The record says of each slice how it was done.
+# The record says of each slice how it was done: by *balloons*, by the *hull*, *carried* over from the neighbouring
+# slices, or *skipped*, that is, left empty.
 
 # %% tags=["nbval-check-output"]
 statuses = [s["status"] for s in paper.record["slices"]]
@@ -146,7 +149,9 @@ counts = {status: statuses.count(status) for status in dict.fromkeys(statuses)}
 print("the paper's preset:", counts)
 if case.truth is not None:
     score = cn.score(paper.patch, case.truth, bone)
-    print(f"Dice {score.dice:.3f}, HD95 {score.hd95:.1f} mm, in bone: {score.overlap} voxels")
+    print(
+        f"Dice {score.dice:.3f}, HD95 {score.hd95:.1f} mm, {score.overlap} voxels lie in bone"
+    )
     planes = np.flatnonzero(case.truth.voxels.any(axis=(1, 2)))
     print(f"bone was cut in slices {planes[0]} to {planes[-1]}")
 
@@ -164,6 +169,7 @@ for seed in (1, 2) if case.phantom is not None else ():
     other = classroom.synthetic("class", seed=seed)
     other_bone = cn.segment(other.ct)
     heads.append((other, other_bone, cn.find_openings(other_bone)))
+papers = [paper] + [cn.design(b, holes, preset="paper") for _, b, holes in heads[1:]]
 
 
 # %%
@@ -185,8 +191,8 @@ def inside_by(case, bone, openings, made):
 
 
 # %% tags=["nbval-check-output"]
-for number, (head, its_bone, holes) in enumerate(heads):
-    below = inside_by(head, its_bone, holes, cn.design(its_bone, holes, preset="paper"))
+for number, (head, design) in enumerate(zip(heads, papers, strict=True)):
+    below = inside_by(*head, design)
     by = np.array([below[at] for at in sorted(below)] or [np.nan])
     middle = by[len(by) // 3 : len(by) - len(by) // 3]
     print(
@@ -201,7 +207,7 @@ for number, (head, its_bone, holes) in enumerate(heads):
 # **Predict, then move, then explain.** The panel starts with the pressure *from the end tangents*; the counts and
 # scores above are those of the paper's constant, which is the other choice. Go through the slices from the first to
 # the last. Where will the patch be thinnest, where does the hull take over from the balloon, and are there bad slices
-# in between?
+# in between? (No sliders? Use `panel.set(plane=23)` and the like in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.patch(bone, opening)
@@ -211,19 +217,21 @@ panel
 own_k = cn.design(
     bone, openings, preset="paper", pressure_mm=None
 )  # the pressure from the end tangents
+areas = own_k.patch.voxels.sum(axis=(1, 2)) * px**2
 balloons = [s for s in own_k.record["slices"] if s["status"] == "balloon"]
+hulls = [s["plane"] + first for s in own_k.record["slices"] if s["status"] == "hull"]
+print("hull:", ", ".join(f"slice {at} ({areas[at]:.0f} mm2)" for at in hulls))
 for s in balloons[:2] + balloons[-3:]:
-    where = s["plane"] + first
-    area, theta1 = own_k.patch.voxels[where].sum() * px**2, s["theta1"][0]
-    print(f"slice {where}: patch of {area:.0f} mm2, outer theta1 {theta1:.0f} degrees")
+    where, theta1 = s["plane"] + first, s["theta1"][0]
+    print(f"slice {where}: patch of {areas[where]:.0f} mm2, outer theta1 {theta1:.0f} degrees")
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
 # At the upper and lower end of the hole, where the cutter leaves part of the thickness: there the ring is closed, the
-# hull fills a thin sickle, and where the balloon takes over the patch leaps. This is one source of the staircase. The
-# first two slices lie below the cut: nothing is missing there.
+# hull fills a thin sickle or nothing, and where the balloon takes over the patch leaps. This is one source of the
+# staircase. The first two slices lie below the cut: nothing is missing there.
 #
 # The last slice with a balloon is bad: next to nothing is left of its patch. Its outer theta1 stands out among those
 # printed. More than 180 degrees means that the curve has to arrive from *inside* the head, so outer and inner curve
@@ -236,38 +244,46 @@ for s in balloons[:2] + balloons[-3:]:
 #
 # Two things in the paper's preset fit one scan only.
 #
-# - **`skip`.** "10 points" are 4.5 mm on the paper's pixels. Who counts ten points on ours leaves out 9 mm on each side,
-#   and a chord 9 mm longer in all must be bridged from farther away.
+# - **`skip`.** Ten points of 0.45 mm are 4.5 mm. Who counts ten points on our pixels leaves out 9 mm on each side, and
+#   a chord 9 mm longer in all must be bridged from farther away.
 # - **`k`.** A constant in px per index squared fits one width of gap (lesson 04).
 #
 # **Predict:** which of the two costs more here? And if both are mended, is anything left?
 
+
+# %%
+def designs(**options):
+    """A design of each head; its surface may stay rough, as only the patch is measured."""
+    return [cn.design(b, holes, **options | {"smooth": False}) for _, b, holes in heads]
+
+
+def scores(made):
+    """Score of each head's design; none where the truth is not known."""
+    pairs = zip(made, heads, strict=True)
+    return [
+        cn.score(m.patch, head.truth, b) for m, (head, b, _) in pairs if head.truth is not None
+    ]
+
+
 # %% tags=["nbval-check-output"]
-skips = {"skip 10 points = 9 mm": {"skip_mm": 10 * px}, "skip 4.5 mm": {}}
-pressures = {"the paper's k": {}, "k from the ends": {"pressure_mm": None}}
-
-
-def scores(**options):
-    """Score of a design of each head; none where the truth is not known."""
-    made = [(head, b, cn.design(b, holes, **options)) for head, b, holes in heads]
-    return [cn.score(m.patch, head.truth, b) for head, b, m in made if head.truth is not None]
-
-
-print(f"{'each head':37} Dice                mean distance (mm)")
-for skip, shorter in skips.items():
-    for k, pressure in pressures.items():
-        reached = scores(preset="paper", **shorter, **pressure)
+print(f"{'each head':30} Dice                mean distance (mm)")
+for skip in (10 * px, 10 * 0.45):
+    for k, pressure in (("the paper's k", {}), ("k from the ends", {"pressure_mm": None})):
+        known = skip == preset["skip_mm"] and not pressure  # this one is made already
+        options = preset | {"skip_mm": skip} | pressure
+        reached = scores(papers if known else designs(**options))
         dices = " ".join(f"{s.dice:.3f}" for s in reached)
-        print(f"{skip:21} {k:15} {dices}  ", " ".join(f"{s.assd:.2f}" for s in reached))
+        ways = f"skip {skip:.1f} mm, {k:15}"
+        print(f"{ways:30} {dices}  ", " ".join(f"{s.assd:.2f}" for s in reached))
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
 # Compare the rows in pairs. In each of the three heads both causes cost, and `k` costs more: mending `k` alone gains
-# more than mending `skip` alone (0.807 and 0.712 from 0.549 in the first), and mending both gains most (0.850), but less
-# than the sum of the two. The two are not independent: a shorter gap needs less height, so the weak constant does less
-# harm in it. What is left lies with single tangents.
+# more than mending `skip` alone (0.807 and 0.712 from 0.549 in the first), and mending both gains most (0.850), but
+# less than the sum of the two. The two are not independent: a shorter gap needs less height, so the weak constant does
+# less harm in it. What is left lies with single tangents.
 #
 # </details>
 #
@@ -278,41 +294,57 @@ for skip, shorter in skips.items():
 # across the short side of the hole, where the way from bone to bone is shortest. Our default turns the fan into six
 # directions and takes a weighted mean.
 #
-# **Predict:** will one fan, across the short side, be enough? (Twelve designs: the next cell takes some 20 seconds.)
+# **Predict:** will one fan, across the short side, be enough? (Nine designs: the next cell takes some 15 seconds.)
 
 # %% tags=["nbval-check-output"]
 tries = {"axial": {"axial": True}}
-tries |= {f"fans, {n} direction(s)": {"directions": n} for n in (1, 2, 6)}
+tries |= {f"fans, {n} direction(s)": {"directions": n} for n in (1, 6)}
+shared = {name: scores(designs(**options)) for name, options in tries.items()}
 print(f"{'each head':20} Dice                HD95 (mm)       mean distance (mm)")
-for name, options in tries.items():
-    reached = scores(**options)
+for name, reached in shared.items():
     rows = [" ".join(f"{s.dice:.3f}" for s in reached)]
     rows += [" ".join(f"{getattr(s, size):.2f}" for s in reached) for size in ("hd95", "assd")]
     print(f"{name:20} " + "   ".join(rows))
+axial, one_way, six_ways = (np.array([s.assd for s in reached]) for reached in shared.values())
+print("from one to six the mean falls by", *(f"{gain:.2f} mm" for gain in one_way - six_ways))
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
-# One fan is good already, in each of the three heads. More directions average out the error of single tangents, which is
-# what a slice by slice method suffers from: look at the mean distance from one direction to six, which falls in every
-# head, by 0.08 to 0.17 mm. HD95 does not see it: it is one pixel (0.9 mm) with fans of any
-# number.
+# One fan is good already, in each of the three heads. More directions average out the error of single tangents, which
+# is what a slice by slice method suffers from: from one direction to six the mean distance falls in each head, by 0.07
+# to 0.16 mm. HD95 does not see it: it is one pixel (0.9 mm) with one fan and with six.
 #
 # </details>
 #
 # ## 5. What helps at the ends
 #
-# The paper's Figure 7 fails by one wrong tangent at one end. What mends it? We cut open twelve skulls of SkullFix
-# (Kodym and others 2021, doi 10.1016/j.dib.2021.106902), at five places, 40 to 100 mm wide, and designed them with
-# fans. Mean error along rays of the outer / inner surface in mm, and Dice:
+# The paper's Figure 7 fails by one wrong tangent at one end. Two things can mend that. Many directions are one: each
+# place of the patch is then made from several pairs of ends. The other is in the fans above already: neighbouring
+# slices of a fan **share** their tangents (`coupling_mm`), that is, each takes a weighted mean of its own and its
+# neighbours'.
 #
-# | tangents | one direction | six directions |
-# |---|---|---|
-# | each slice alone, radius without a bend | 0.77 / 1.10, 0.869 | 0.49 / 0.71, 0.919 |
-# | shared between slices (`coupling_mm`), with a bend: our default | 0.73 / 1.00, 0.882 | 0.47 / 0.67, 0.923 |
+# **Predict:** which of the two helps more? With one of them at work, does the other still help? (Six designs, some 10
+# seconds.)
+
+# %% tags=["nbval-check-output"]
+print(f"{'each head':34} mean distance (mm)")
+for n, together in ((1, one_way), (6, six_ways)):
+    alone = np.array([s.assd for s in scores(designs(directions=n, coupling_mm=0))])
+    for name, mm in (("each slice alone", alone), ("tangents shared", together)):
+        print(f"{n} direction(s), {name:16}", " ".join(f"{d:.2f}" for d in mm))
+    print("   sharing takes off", *(f"{gain:.2f}" for gain in alone - together), "mm")
+
+# %% [markdown]
+# <details>
+# <summary>Answer</summary>
 #
-# Sharing helps where there is one direction; six directions are the better cure, and leave little to gain.
+# With one direction sharing helps in each of the three heads, by 0.10 to 0.22 mm. Six directions help more: even with
+# each slice alone they come nearer than one direction with shared tangents. And they leave little to gain: 0.05 mm in
+# two heads, nothing in the third.
+#
+# </details>
 #
 # ## A mistake to make once
 #

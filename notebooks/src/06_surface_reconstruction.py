@@ -52,12 +52,13 @@ print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 # %% [markdown]
 # ## 1. Marching cubes
 #
-# Take eight neighbouring voxels as the corners of a cube. Some are in, some are out: 256 cases. A table gives the
-# triangles of each case, with corners half-way along the edges of the cube. March on to the next cube.
+# Take eight neighbouring voxels as the corners of a cube. Each is in or out, which makes 2 x 2 x ... x 2 = 256 cases. A
+# table gives the triangles of each case, with corners half-way along the edges of the cube. March on to the next cube.
 #
 # **Predict.** Planes are 2.5 mm apart, pixels 0.9 mm. How high will the stairs be?
 
 # %% tags=["nbval-check-output"]
+print(f"{2**8} cases")
 raw = surface_reconstruction.extract_surface(patch, smooth=False)
 smooth = surface_reconstruction.extract_surface(patch)
 print(f"raw: {len(raw.faces)} faces, area {raw.areas.sum() / 100:.1f} cm2")
@@ -78,7 +79,8 @@ for rise, run in ((1, 1), (1, 2)):
     slope = np.hypot(rise, run)
     cubes, marching = rise + run, run - rise + rise * np.sqrt(2)
     print(
-        f"a slope of {rise} in {run}: faces of cubes {cubes / slope - 1:+.0%} area, "
+        f"a slope of {rise} in {run} ({np.degrees(np.arctan2(rise, run)):.0f} degrees): "
+        f"faces of cubes {cubes / slope - 1:+.0%} area, "
         f"marching cubes {marching / slope - 1:+.0%}"
     )
 print(f"here: raw {raw.areas.sum() / smooth.areas.sum() - 1:+.0%} area against smooth")
@@ -100,9 +102,9 @@ print(f"volume: voxels {voxels_cm3:.2f} cm3, raw {raw.volume / 1000:.2f} cm3")
 #
 # ## 2. How far may it move?
 #
-# Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half
-# a voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface` finds the smoothest
-# surface within these bounds and keeps the volume.
+# Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half a
+# voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface`
+# finds the smoothest surface within these bounds and keeps the volume.
 
 # %% tags=["nbval-check-output"]
 moved = surface_reconstruction.measure_deviation(raw, smooth)
@@ -114,9 +116,11 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 # %% [markdown]
 # **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
 # leave the bound by taking very many? Where will the vertices pile up that are stopped by it?
+# (No sliders? Use `panel.set(steps=200)` in a new cell.)
 
 # %% tags=["nbval-check-output"]
-widgets.surface(patch)
+panel = widgets.surface(patch)
+panel
 
 # %% tags=["nbval-check-output"]
 areas = {}
@@ -168,8 +172,9 @@ print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
 
 # %% [markdown]
 # **Can it?** Yes, if it is `sound` (manifold, of positive volume, without crossings), in one part for each hole, and
-# nowhere too thin: below about 2 mm a workshop will warn you. All this holds here. Whether it can also be put *in* is
-# another question: a rim that widens inwards holds it back.
+# nowhere thinner than your workshop's material and machine allow. The first two hold here; for the third ask the
+# workshop what it makes of a wall of 4.1 mm. Whether it can also be put *in* is another question: a rim that widens
+# inwards holds it back.
 
 # %% tags=["nbval-check-output"]
 data = weigh_implant(smooth)

@@ -9,8 +9,8 @@
 # %% [markdown]
 # # 07 Evaluation: how good is it, really?
 #
-# A prosthesis that looks right may be wrong by millimetres. This lesson measures, in mm, both ways, and shows how each measure
-# can be fooled. It also puts the paper's own yardstick, the mirrored head, on trial.
+# A prosthesis that looks right may be wrong by millimetres. This lesson measures, in mm, both ways, and shows how each
+# measure can be fooled. It also puts the paper's own yardstick, the mirrored head, on trial.
 #
 # **After this lesson you can**
 # - compute Dice, surface distances and HD95 and say what each does not see;
@@ -37,9 +37,10 @@ from cranio_nb.teaching import check, classroom, widgets
 # *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, for this lesson needs
 # a truth: `classroom.load(scan="path/to/your/scan", truth="path/to/its/truth.nii.gz")`.
 
-# %%
+# %% tags=["nbval-check-output"]
 case = classroom.load("class", needs_truth=True)
 bone, truth = cn.segment(case.ct), case.truth
+print(f"voxels of {np.round(truth.spacing, 2)} mm (between planes, rows, columns)")
 openings = cn.find_openings(bone)
 made = cn.design(bone, openings)
 seen = against_truth.check_truth(made, truth, bone, openings[0].head_centre)
@@ -62,7 +63,8 @@ for whose, table in (("ours", seen.table3), ("the paper's", paper_tables.PAPER_D
 # Voxels are no good unit: one is 2.5 mm high and 0.9 mm wide. From here on we use mm.
 #
 # **Predict, then move, then explain.** Where on the prosthesis will the largest distances lie: in its middle or at its
-# rim? Switch to the inner side (its numbers are printed too). Is it better or worse?
+# rim? Switch to the inner side (its numbers are printed too; without controls: `panel.set(side="inner")`). Is it better
+# or worse?
 
 # %% tags=["nbval-check-output"]
 panel = widgets.distances(made, seen.prosthesis)
@@ -86,8 +88,8 @@ for side, code in against_truth.SIDES.items():
 # At the rim: all of the largest lie within 3.3 mm of bone, where one voxel more or less of slanted bone decides.
 # One would expect the middle to be worst, for it is farthest from any bone, and one wrong tangent (lesson 05) does
 # most harm there. But here six directions are averaged, and the middle is one of the *best* places: 0.07 mm off, where
-# the mean is 0.14 mm. The inner side is a little worse on average (0.18 against 0.14 mm), as the gap's inner ends are
-# harder to see; the single worst node lies on the outer side (1.91 against 1.05 mm).
+# the mean is 0.14 mm. The inner side is a little worse on average here (0.18 against 0.14 mm); the single worst node
+# lies on the outer side (1.91 against 1.05 mm).
 #
 # </details>
 #
@@ -149,9 +151,9 @@ print(f"a ball of {radius:.0f} mm radius, moved by one voxel: Dice {dice:.3f}")
 # <summary>Answer</summary>
 #
 # (a) For a thin shell Dice is harsh: a shift by one voxel (0.9 mm) across it leaves 0.830, while a ball of as much bone
-# would keep 0.958. Our design has 0.969. HD95 does not see the difference: both have 0.90 mm, one pixel. (b) HD95 sees what is
-# missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is as bad as the shift for Dice
-# (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints several.
+# would keep 0.958. Our design has 0.969. HD95 does not see the difference: both have 0.90 mm, one pixel. (b) HD95 sees
+# what is missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is as bad as the shift for
+# Dice (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints several.
 #
 # </details>
 #
@@ -189,7 +191,7 @@ for percent in (0, 2, 4, 6):
     # each column of the sound half shows what lay a little nearer to the middle
     source = np.where(cols < middle, middle + (cols - middle) / (1 + percent / 100), cols)
     skull = bone.with_voxels(bone.voxels[:, :, np.rint(source).astype(int)])
-    if percent:
+    if percent:  # with 0 it is the head as it was
         found = cn.design(skull, openings, method="reflection", fit_rim=False)
     s = cn.score(found.patch, truth, skull)
     ends = f"HD95 {s.hd95:.2f}, mean {s.assd:.2f} mm"
@@ -198,19 +200,19 @@ for percent in (0, 2, 4, 6):
 # %% [markdown]
 # Two errors were in the plain mirror, and they are of different kinds.
 #
-# - **Pose.** This head is turned by 2.1 degrees. With the plane found, its mirror image rises from Dice 0.817 to 0.951 and
-#   HD95 falls from 1.80 to 0.90 mm: on this head a mirror is a good yardstick, once it stands straight.
+# - **Pose.** This head is turned by 2.1 degrees. With the plane found, its mirror image rises from Dice 0.817 to 0.951
+#   and HD95 falls from 1.80 to 0.90 mm: on this head a mirror is a good yardstick, once it stands straight.
 # - **Asymmetry.** No plane mends that. With the sound half 4 % wider the yardstick is 0.58 mm off on average, with 6 %
 #   0.66 mm; each further step costs.
 #
-# Real heads are not symmetric. A yardstick that is itself off by 0.58 mm cannot tell a method that is off by 1 mm from
-# one that is off by half. Where the defect crosses the middle there is no mirror at all. The paper is right to call it a
-# *similarity* measure.
+# Real heads are not symmetric. A yardstick that is itself off by 0.58 mm on average may well take the worse of two good
+# methods for the better one. Where the defect crosses the middle there is no mirror at all. The paper is right to call
+# it a *similarity* measure.
 #
 # ## A mistake to make once
 #
-# Compare masks that stand on different grids, here one whose planes are said to be nearer (2 mm apart, not 2.5). As arrays they have the same
-# shape, even the same voxels, and a Dice of 1; the volumes know better:
+# Compare masks that stand on different grids, here one whose planes are said to be nearer (2 mm apart, not 2.5). As
+# arrays they have the same shape, even the same voxels, and a Dice of 1; the volumes know better:
 
 # %% tags=["raises-exception"]
 nearer = cn.Volume(truth.voxels, truth.affine @ np.diag([0.8, 1, 1, 1]))

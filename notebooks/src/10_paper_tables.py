@@ -36,7 +36,7 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # | name | the paper's preset | default |
 # |---|---|---|
 # | slices | planes of the scan | fans in 6 directions |
-# | `skip` | 4.5 mm, the paper's ten points | 1.5 mm |
+# | `skip` | 4.5 mm, the paper's ten points (lesson 03) | 1.5 mm |
 # | pressure | 0.062 px per index squared | follows from the tangents |
 # | snaxels | 21 | 41 |
 # | surface | marching cubes | smoothed within half a voxel |
@@ -132,14 +132,14 @@ for name, values in zip(names, wide.T, strict=True):
     print(f"{name:25} {values.mean():5.0f}, from {values.min():.0f} to {values.max():.0f}")
 
 # %% [markdown]
-# From the angles one would read gaps of 56 mm on average. The balloons' ends are L = 74 mm apart, as L has the two `skip`
-# in it, and bone is missing over 61 mm. The tangents are those at the balloons' ends, so L is what belongs to the angles,
-# and the R that fits is 106 mm, not 80: the side of this head is flatter. Gap and radius are two unknowns, and no single
-# angle gives both. Of the authors' opening we may say that it was a wide one, and not much more.
+# From the angles one would read gaps of 56 mm on average. The balloons' ends are L = 74 mm apart, as L has the two
+# `skip` in it, and bone is missing over 61 mm. The tangents are those at the balloons' ends, so L is what belongs to
+# the angles, and the R that fits is 106 mm, not 80: the side of this head is flatter. Gap and radius are two unknowns,
+# and no single angle gives both. Of the authors' opening we may say that it was a wide one, and not much more.
 #
-# The second end is steeper than the first: the skull is rounder towards the back. The exception is the last bridged
-# slice, whose outer theta1 is more than 180 degrees: there the curve has to arrive from *inside* the head. The cutter
-# had slanted the bone, and the line was fitted to the slant (lesson 05, section 3).
+# The second end is the steeper one in 20 of 22 slices: this skull is rounder towards the back. One exception is the
+# last bridged slice, whose outer theta1 is more than 180 degrees: there the curve has to arrive from *inside* the head.
+# The cutter had slanted the bone, and the line was fitted to the slant (lesson 05, section 3).
 #
 # The number of steps depends on `dt`, which the paper does not give. With dt = 1 most of our slices take more steps
 # than the paper's largest; whether their time step was larger or their stop earlier, we cannot tell. Angles of the same
@@ -149,8 +149,8 @@ for name, values in zip(names, wide.T, strict=True):
 #
 # The paper's distances are in voxels against a *mirrored* skull; ours are against the bone that was really removed. So
 # the reflection, the paper's truth, can be a row itself (as it is in the paper: not bent to the rim). The first four
-# rows are the preset and its two causes of error (lesson 05): ten points counted on our pixels, which are 9 mm, or the
-# paper's 4.5 mm; the constant `k`, or one from the tangents. Then comes the default, on axial slices and in fans.
+# rows are the preset and its two causes of error (lesson 05): ten points counted on our pixels, which are 9 mm, or
+# 4.5 mm; the constant `k`, or one from the tangents. Then comes the default, on axial slices and in fans.
 # Lesson 08 has the reflection and You's fill in detail. `thin-plate` and `dnurbs` are not in the paper's table; the
 # second is what its last paragraph wishes for. (Ten designs: up to half a minute.)
 
@@ -196,16 +196,16 @@ print_row("printed: You", printed["You et al."])
 # <details>
 # <summary>Answer</summary>
 #
-# No. Two causes are in the first four rows. **Skip:** ten points are 4.5 mm on their pixels and 9 mm on ours; read the
-# first row against the second. **k:** their -0.062 was chosen for their opening, and a `k` fits one width of gap (lesson
-# 04); read the second row against the fourth. Each alone brings the mean down, and both together come nearest. Outside the
-# constant weighs more, inside both weigh about the same. With both mended the outer mean is below the paper's; the
-# inner one is not, as a gap's inner ends are harder to find. The default's shorter `skip` and the fans bring the rest.
-# The idea was good; the numbers were local.
+# No. Two causes are in the first four rows. **Skip:** ten points are 9 mm on our pixels, and 4.5 mm on theirs if these
+# are what lesson 03 takes them for; read the first row against the second. **k:** their -0.062 was chosen for their
+# opening, and a `k` fits one width of gap (lesson 04); read the second row against the fourth. Each alone brings the
+# mean down, and both together come nearest. Outside the constant weighs more, inside both weigh about the same. With
+# both mended the outer mean is below the paper's; the inner one is not. The default's shorter `skip` and the fans bring
+# the rest. The idea was good; the numbers were local.
 #
 # The reflection comes very near here, as this head is nearly symmetric: on such a head the paper's truth would do. On a
-# real one it would not (lesson 08), and part of the paper's own mean may be the mirror's. The default, the thin plate and
-# dnurbs are all a fraction of a voxel off: at this size the grid decides between them.
+# lopsided one it would not (lesson 08), and part of the paper's own mean may be the mirror's. The default, the thin
+# plate and dnurbs are all a fraction of a voxel off: at this size the grid decides between them.
 #
 # </details>
 #
@@ -233,14 +233,15 @@ for name, rows in headline.items():
 # <details>
 # <summary>Answer</summary>
 #
-# In the mean it holds on all three heads: 1.24 to 1.49 voxels against 2.31 to 2.54, and with a skip of 9 mm still 1.96 to
-# 2.25. The factor is less than two, in the paper it is nearly three. In the largest distance it holds on two of the three
-# heads (on head 1 the preset has 6.70, You 4.59), and on none with 9 mm: one bad end in one slice makes that number.
+# In the mean it holds on all three heads: 1.24 to 1.49 voxels against 2.31 to 2.54, and with a skip of 9 mm still 1.96
+# to 2.25. The factor is less than two, in the paper it is nearly three. In the largest distance it holds on two of the
+# three heads (on head 1 the preset has 6.70, You 4.59), and on none with 9 mm: one bad end in one slice makes that
+# number.
 #
 # </details>
 #
-# **Question.** You's mean is 3.09 in the paper and 2.54 here, on another head. Is that good agreement, or chance? Measure
-# the height of the cap that the flat fill leaves out.
+# **Question.** You's mean is 3.09 in the paper and 2.54 here, on another head. Is that good agreement, or chance?
+# Measure the height of the cap that the flat fill leaves out.
 
 # %% tags=["nbval-check-output"]
 from_truth = against_truth.side_distances(
@@ -274,9 +275,8 @@ for wide_mm, high_mm in ((0.45, 0.45), (0.9, 2.5), (0.45, 2.5)):
 # method, same flaw, while 3.09 itself only says how high the authors' cap was.
 #
 # Voxels are no cubes, and their shape changes what "nearest" means. The last three lines count the same two surfaces in
-# cubes, in our voxels, and in voxels like the authors': 0.51 to 0.55, for the plate stands upright. What moves this ratio
-# more is the single node that gives the largest distance: run at `"full"`, this cell prints 0.53 of the cap's height in
-# mm, and 0.28 for mean / max in voxels. Of the paper's 0.51 we cannot tell which it is.
+# cubes, in our voxels, and in voxels such as the authors' may have been: 0.51 to 0.55, for the plate stands upright. So
+# the paper's ratio is what such a fill gives; more cannot be read from two numbers.
 #
 # </details>
 #
@@ -347,9 +347,9 @@ for i, side in enumerate(("outer", "inner")):
 #
 # ## Figure 7: good slices and a bad one
 #
-# The paper shows two good patches, one whose thickness "is not suitable", and a zoom into it. We take the preset with `k`
-# from the ends, so that only the ends are to blame, and order its slices by their Dice coefficient: the best, the middle
-# one, the worst.
+# The paper shows two good patches, one whose thickness "is not suitable", and a zoom into it. We take the preset with
+# `k` from the ends, so that only the ends are to blame, and order its slices by their Dice coefficient: the best, the
+# middle one, the worst.
 
 # %%
 made, lost = designs["its k from ends"], case.truth.voxels
@@ -449,8 +449,8 @@ pictures.picture(fig, alt, f"volumes {' and '.join(volumes)} cm3")
 # ## Your turn: the whole method under sliders
 #
 # Every parameter at once, measured against the truth each time. **Predict** before you move: which *single* change
-# from the default costs most? Is there one that does better? (DSC is the Dice coefficient; border DSC is Dice over
-# the voxels within 10 mm of bone only. `panel.parameters` is what `cranio-nb design --params` takes as JSON.)
+# from the default costs most? Is there one that does better? (DSC is the Dice coefficient; border DSC counts
+# only the voxels near bone. `panel.parameters` is what `cranio-nb design --params` takes as JSON.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.tuner(classroom.synthetic("tiny").phantom)
@@ -469,7 +469,7 @@ _ = panel.set(**start)
 # what k can do: alone, without the tangents, it raises the middle by k N^2 / 8 (lesson 04)
 by_hand = panel.values["pressure_mm"]
 snaxels = {
-    "paper, its pixels": (0.062 * 0.45, 20),
+    "paper, half px": (0.062 * px / 2, 20),
     "paper, our pixels": (0.062 * px, 20),
     "by hand": (by_hand, panel.values["n_snaxels"] - 1),
 }
@@ -483,14 +483,14 @@ for name, (k, n) in snaxels.items():
 #
 # What breaks the balance of pressure and tension: k = 0.062 mm per index squared, by hand, in place of the pressure
 # that follows from the ends. The same figure as the paper's, and yet here far too *strong*, where section "Table 3" and
-# lesson 04 find it too weak. Its unit is mm in place of px, and what matters is k N^2: 99 mm with N = 40, against 22 mm for the
-# preset on our pixels (N = 20), and 11 mm on the authors' own. Then come
-# slicing along the scan's own planes and a tension of 2: `k` is worked out for a tension of 1, and twice of it pulls the
-# balloon flat. Then fitting tangents right at the cut (`skip_mm` 0), and a `reach_mm` of 4, too short to carry a tangent.
-# The number of snaxels hardly matters: 11 do as well as 41.
+# lesson 04 find it too weak. Its unit is mm in place of px, and what matters is k N^2: 99 mm with N = 40, against 22 mm
+# for the preset on our pixels (N = 20), and 11 mm on pixels of half the size. Then come slicing along the scan's own
+# planes and a tension of 2: `k` is worked out for a tension of 1, and twice of it pulls the balloon flat. Then fitting
+# tangents right at the cut (`skip_mm` 0), and a `reach_mm` of 4, too short to carry a tangent. The number of snaxels
+# hardly matters here: 11 do as well as 41.
 #
-# A `skip_mm` of 5 does *better* than the default, on this one coarse head. But a value chosen on one head fits that head,
-# as the paper's `k` did.
+# A `skip_mm` of 5 does *better* than the default, on this one coarse head. But a value chosen on one head fits that
+# head, as the paper's `k` did.
 #
 # </details>
 

@@ -36,19 +36,15 @@ def function(text):
     return names[ast.parse(text).body[-1].name]
 
 
-def shipped(stub):
-    """Exercise -> the function of its solution cell, or of its stub in the student's copy."""
-    found = {}
-    for source in SOURCES:
-        cells = read_lesson(source).cells
-        for cell in cells:
-            if "solution" in tags(cell):
-                number = exercise_number(cells, cell)
-                found[number] = function(make_stub(cell.source, number) if stub else cell.source)
-    return found
+def solution_texts():
+    """Exercise -> the text of its solution cell."""
+    lessons = [read_lesson(source).cells for source in SOURCES]
+    return {exercise_number(cells, c): c.source for cells in lessons for c in cells if "solution" in tags(c)}
 
 
-SOLUTIONS, STUBS = shipped(False), shipped(True)
+TEXTS = solution_texts()
+SOLUTIONS = {number: function(text) for number, text in TEXTS.items()}
+STUBS = {number: function(make_stub(text, number)) for number, text in TEXTS.items()}
 
 
 def written(name, body):
@@ -63,10 +59,10 @@ def judge(name, body):
     return check.exercise(name, written(name, body))
 
 
-def hint_tests(wrong, exercises, complete=lambda name, body: body):
-    """The two tests of a lesson: all exercises have typical wrong answers, and each of these gets its hint.
+def hint_tests(wrong, exercises):
+    """The two tests of a lesson: all exercises have typical wrong answers, and each of these is told its cause.
 
-    `wrong` holds (body, words of the hint) by exercise, `complete` makes a whole body of what is written there.
+    `wrong` holds (body, words) by exercise; without words the answer must be shown beside the right one.
     """
 
     def test_every_exercise_has_wrong_answers():
@@ -74,9 +70,13 @@ def hint_tests(wrong, exercises, complete=lambda name, body: body):
 
     listed = [(name, *answer) for name, answers in wrong.items() for answer in answers]
 
-    @pytest.mark.parametrize(("name", "body", "hint"), listed)
-    def test_a_typical_wrong_answer_gets_its_hint(name, body, hint):
-        verdict = judge(name, complete(name, body))
-        assert not verdict.passed and hint in verdict.message
+    @pytest.mark.parametrize(("name", "body", "words"), listed)
+    def test_a_wrong_answer_is_told_its_cause(name, body, words):
+        verdict = judge(name, body)
+        assert not verdict.passed
+        if words is None:
+            assert "yours" in verdict.compared and "mine" in verdict.compared
+        else:
+            assert words in verdict.message
 
-    return test_every_exercise_has_wrong_answers, test_a_typical_wrong_answer_gets_its_hint
+    return test_every_exercise_has_wrong_answers, test_a_wrong_answer_is_told_its_cause

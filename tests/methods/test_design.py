@@ -61,8 +61,9 @@ METHODS = {
     # no head is symmetric, and finer voxels do not make it so
     "reflection as it is": Method("reflection", (0.92, 0.88, 0.90), mirror=0.95, improves=False, preset="paper"),
     "dnurbs": Method("dnurbs", (0.95, 0.93, 0.92), mirror=0.95),
-    # a flat fill: the wider the hole, the deeper it sinks under the vault, whatever the voxels
-    "you": Method("you", (0.76, 0.53, 0.58), mirror=0.93, stray=8.0, nested=0.75, improves=False),
+    # a flat fill: the wider the hole, the deeper it sinks under the vault, whatever the voxels; its mirrored designs
+    # agree at 0.888 to 0.978 over six heads
+    "you": Method("you", (0.76, 0.53, 0.58), mirror=0.85, stray=8.0, nested=0.75, improves=False),
 }
 
 

@@ -1,8 +1,11 @@
 """Checks of exercises: the shipped solution passes, the stub gets the teaching message, nothing stops a check."""
 
+import re
+import threading
+
 import numpy as np
 import pytest
-from lesson_answers import SOLUTIONS, STUBS, written
+from lesson_answers import SOLUTIONS, STUBS, TEXTS, judge, written
 
 from cranio_nb.curves import cubic
 from cranio_nb.teaching import check
@@ -61,6 +64,85 @@ def test_hints_come_in_stages(name):
     assert lines[3] == lines[4] and len({*lines}) == 4
 
 
+@pytest.mark.parametrize("name", EXERCISES)
+def test_no_hint_is_the_answer(name):
+    """Neither the answer's own line, nor words that are right when they are put behind a `return`."""
+    returned = TEXTS[name].rsplit("return ", 1)[1]
+    for hint in EXERCISES[name].hints:
+        assert "".join(returned.split()) not in "".join(hint.split())
+        for part in re.split(r"[:;] |, (?=\w+ = )", hint):
+            try:
+                compile(part.strip(" .`"), "hint", "eval")
+            except SyntaxError:
+                continue
+            assert not judge(name, f"return {part.strip(' .`')}").passed, hint
+
+
+@pytest.mark.parametrize("hint", ["x", None, 1.5, [1], 0, -3, 10**9, np.int64(2)], ids=repr)
+def test_a_hint_may_be_asked_for_by_anything(hint):
+    line = str(check.exercise("4.1", STUBS["4.1"], hint=hint))
+    assert "hint=1" in line or "of 3:" in line
+
+
+@pytest.mark.parametrize("name", EXERCISES)
+def test_shows_what_is_wrong_beside_what_is_right(name):
+    """An answer that is right in nothing: the right one of another case, so that its form is right."""
+    cases, right = EXERCISES[name].cases(), [EXERCISES[name].right(*case) for case in EXERCISES[name].cases()]
+    other = iter(right[1:] + right[:1])
+    verdict = check.exercise(name, lambda *given: next(other))
+    assert len(cases) == 3 and not verdict.passed
+    assert "yours" in verdict.compared and "mine" in verdict.compared
+    assert verdict.compared.startswith(("Given (", "Case "))
+
+
+def endless(*given):
+    while True:
+        pass
+
+
+@pytest.mark.parametrize("thread", ["main", "another"])
+def test_an_endless_loop_is_named_from_any_thread(monkeypatch, thread):
+    monkeypatch.setattr(check, "LIMIT_S", 0.05)
+    lines = []
+    if thread == "main":
+        lines.append(str(check.exercise("4.1", endless)))
+    else:
+        worker = threading.Thread(target=lambda: lines.append(str(check.exercise("4.1", endless))))
+        worker.start()
+        worker.join()
+    assert "0 of 3 points. The function did not end within 0.05 s: is there a loop that never stops?" in lines[0]
+
+
+@pytest.mark.parametrize(
+    ("answer", "said"),
+    [
+        (lambda k, n: k.shape, "AttributeError"),
+        (lambda k, n: asks(), "stopped with AsksError: no keyboard here"),
+        (lambda k, n: recursive(k), "calls itself without end"),
+        (lambda k, n: None if n > 30 else 1.0, "nothing for some of the cases"),
+        (lambda k, n: np.sqrt(-1.0 * n), "not a finite number"),
+        (lambda k, n: exec("raise SystemExit"), "SystemExit"),
+        (lambda k, n: [[1.0], [1.0, 2.0]], "right form"),
+        (lambda k, n: np.ones(n), "One number is wanted"),
+    ],
+    ids=["attribute", "asks", "recursion", "some", "root", "exit", "ragged", "many"],
+)
+def test_says_what_the_function_did(answer, said):
+    assert said in check.exercise("4.1", answer).message
+
+
+class AsksError(NotImplementedError):
+    """As a kernel without a keyboard raises it; it is not the stub's."""
+
+
+def asks():
+    raise AsksError("no keyboard here")
+
+
+def recursive(k):
+    return recursive(k)
+
+
 def test_gives_points_for_part_of_the_cases():
     upright_only = written("1.3", "return np.median(np.diff(np.sort(positions[:, 2])))")
     assert check.exercise("1.3", upright_only).points == 2
@@ -68,7 +150,7 @@ def test_gives_points_for_part_of_the_cases():
 
 def test_says_how_far_off_an_unknown_answer_is_in_its_unit():
     verdict = check.exercise("4.3", lambda length, a, b, n: cubic(length, a, b, n) + np.array([0, 5.0]))
-    assert "mm, where 0.1 mm is allowed" in verdict.message
+    assert "mm; 0.1 is allowed" in verdict.message
 
 
 def test_sees_a_changed_input():
@@ -77,6 +159,7 @@ def test_sees_a_changed_input():
         return mask
 
     assert "work on a copy" in check.exercise("2.2", greedy).message
+    assert "work on a copy" in judge("10.1", "slices.sort(key=lambda s: s['plane']); return 1, 2").message
 
 
 def test_names_the_exercises_when_there_is_no_such():

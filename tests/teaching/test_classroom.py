@@ -46,8 +46,10 @@ def test_a_bridged_plane_has_both_ends(skull, openings):
     plane = classroom.bridged_plane(bone, opening, skip_px=3, reach_px=8)
     assert opening.planes[0] <= plane < opening.planes[1]
     found = feature_extraction.extract_features(bone.voxels[plane])
-    outer, inner = feature_extraction.find_gap_ends(found, opening.sheet.voxels[plane], skip_px=3, reach_px=8)
-    assert np.isfinite(outer.points).all() and np.isfinite(inner.points).all()
+    stage = feature_extraction.find_gap_ends(found, opening.sheet.voxels[plane], skip_px=3, reach_px=8)
+    for ends, same in zip(classroom.gap_ends(bone, opening, plane, skip_px=3, reach_px=8), stage, strict=True):
+        assert np.isfinite(ends.points).all()
+        np.testing.assert_array_equal(ends.points, same.points)
 
 
 def test_a_skull_without_a_gap_in_its_slices_is_refused(skull, openings):

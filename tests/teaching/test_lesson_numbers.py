@@ -1,41 +1,48 @@
-"""Each decimal and each number of mm, degrees or percent in a lesson's text stands in its outputs or its code."""
+"""Each number of a lesson's text is shown by a cell of its section, set in its code, or quoted from a source it names.
+
+A number is a decimal, one of two digits or more, one with a unit, or a word from seven to twelve. Its section is what
+stands under one heading of the second level. What is above the first one, "Parameters" and "Summary" speak of the whole
+lesson; a paragraph may name other sections ("section 2"), the paper, the README or `data_synth.phantom`. What is
+printed is a result, what is written in code is a setting. Left out is what claims nothing: headings, references,
+numbers of lists, years, times of reading and running, formulas but for their decimals, right and straight angles.
+"""
 
 import re
 
 import nbformat
 import pytest
-from lesson_cells import FOLDER, NAMES
-
-CHECKED = [name for name in NAMES if name[:2] in ("06", "07", "08", "09", "10")]
-CITED = {"09_three_d": {"0.935", "0.943"}}  # measured on real skulls, in the README's table
-SUPPOSED = {"06_surface_reconstruction": {"45"}, "09_three_d": {"100"}}  # a slope of 1 in 1; a hole to think of
-NUMBER = re.compile(r"(?<![\w.-])(?:\d+\.\d+(?![\w.])|\d{2,}(?= (?:mm|degrees|%)))")
+from lesson_cells import FOLDER, NAMES, code
+from lesson_numbers import lost_numbers, spoken, typed_texts
+from nbformat import v4
 
 
-def spoken(notebook):
-    """The numbers of the text, without headings and the numbers of exercises."""
-    for cell in notebook.cells:
-        if cell.cell_type == "markdown":
-            text = re.sub(r"^#.*$|[Ee]xercise\s+\d+\.\d+|`[^`]*`", "", cell.source, flags=re.M)
-            yield from NUMBER.findall(text)
+@pytest.fixture(params=NAMES)
+def lesson(request):
+    return request.param, nbformat.read(FOLDER / f"{request.param}.ipynb", 4)
 
 
-def shown(notebook):
-    """What the cells print, draw a line about, or are given."""
-    for cell in notebook.cells:
-        if cell.cell_type == "code":
-            yield cell.source
-            for out in cell.outputs:
-                yield out.get("text") or out.get("evalue") or out.data.get("text/plain", "")
+def test_each_number_of_the_text_is_shown_set_or_quoted(lesson):
+    lost = lost_numbers(*lesson)
+    assert not lost, "\n".join(f"{heading}: no cell shows {number} ({where})" for heading, number, where in lost)
 
 
-@pytest.mark.parametrize("name", CHECKED)
-def test_each_number_of_the_text_stands_in_an_output_or_in_code(name):
-    notebook = nbformat.read(FOLDER / f"{name}.ipynb", 4)
-    known = set(re.findall(r"\d+\.\d+|(?<![\d.])\d+(?![\d.])", "\n".join(shown(notebook))))
-    cited = CITED.get(name, set())
-    assert cited <= set(NUMBER.findall((FOLDER.parent / "README.md").read_text()))
-    lost = [
-        number for number in dict.fromkeys(spoken(notebook)) if number not in known | cited | SUPPOSED.get(name, set())
-    ]
-    assert not lost, f"{name}: no cell shows {', '.join(lost)}"
+def test_no_decimal_is_typed_into_what_is_printed(lesson):
+    """A typed number would be found in the output, and prove nothing."""
+    texts = [text for cell in code(lesson[1]) for text in typed_texts(cell.source)]
+    plain = [text for text in texts if not re.fullmatch(r"\d\.\d|[<>+ ]*\d*\.\d+f?", text)]  # exercises, formats
+    assert not [text for text in plain if re.search(r"\d\.\d", text)]
+
+
+def test_a_number_must_be_shown_in_its_own_section_or_in_one_that_is_named():
+    def section(number, text, printed):
+        output = v4.new_output("stream", text=printed)
+        return [v4.new_markdown_cell(f"## {number}. A part\n\n{text}"), v4.new_code_cell("show(4.5)", outputs=[output])]
+
+    first = section(1, "We set 4.5 mm and get 7.5 mm.", "7.50 mm")
+    notebook = v4.new_notebook(cells=first + section(2, "Not 7.5 mm.\n\nSection 1 has 7.5 mm; the paper 3.09.", "8"))
+    assert [(heading, number) for heading, number, _ in lost_numbers("00_tour", notebook)] == [("2. A part", "7.5")]
+
+
+def test_numbers_are_found_where_they_claim_something_and_not_elsewhere():
+    text = "Lessons 03 and 04, section 2: 3 px, 4.5 mm and $r = 0.38$ in `x = 7.5`, ten steps, 5 % of 12.\n1. Two"
+    assert spoken(text) == ["3", "4.5", "0.38", "ten", "5", "12"]

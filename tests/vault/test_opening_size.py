@@ -23,6 +23,9 @@ def test_a_flat_oval_sheet_has_its_axes_and_place():
     assert (one.length, one.width) == pytest.approx((70, 40), abs=3)  # two voxels, less the outermost percent
     assert one.centre == pytest.approx(tuple(centre), abs=1) and one.direction == pytest.approx((1, 0, 0), abs=0.01)
     assert one.place == "left" and one.lowest == pytest.approx(centre[2] - 35, abs=2.5)
+    # in a head that lies face down in the scan it is the head's other side
+    down = Opening(grid.with_voxels(oval), centre - [70.0, 0, 0], np.diag([-1.0, -1.0, 1.0]))
+    assert measure_opening(down).place == "right"
     assert one.planes == (int(np.flatnonzero(oval.any(axis=(1, 2)))[0]), int(np.flatnonzero(oval.any(axis=(1, 2)))[-1]))
 
 

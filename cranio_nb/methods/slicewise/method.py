@@ -23,7 +23,7 @@ from . import axial as axial_slices
 from . import fanned
 from .slices import Settings, SlicedDesign
 
-_PAPER_SKIP_MM = 4.5  # the 10 boundary points that the paper leaves out, at its pixel of 0.45 mm
+_PAPER_SKIP_MM = 4.5  # the paper's 10 boundary points at 0.45 mm, as it gives no pixel size: 512 of them span a head
 _PAPER_REACH_PX = 10.0  # the paper gives none: as many points again, since a line through fewer of them is unsure
 
 

@@ -32,4 +32,7 @@ _LESSONS = (
 EXERCISES: dict[str, Exercise] = {number: task for lesson in _LESSONS for number, task in lesson.EXERCISES.items()}
 """By number, lesson by lesson."""
 
-__all__ = ["EXERCISES", "Exercise"]
+LESSONS = tuple(f"{at:02d}_{lesson.__name__.rpartition('.')[2]}" for at, lesson in enumerate(_LESSONS))
+"""Names of the lessons, which are those of their notebooks."""
+
+__all__ = ["EXERCISES", "LESSONS", "Exercise"]

@@ -29,9 +29,10 @@ def _places():
 def _positions():
     tilt = np.radians(15.0)
     normal = np.array([0.0, -np.sin(tilt), np.cos(tilt)])
-    upright = np.array([[0.0, 0.0, 2.5 * k] for k in range(6)])
-    shuffled = np.array([[-100.0, -140.0, 2.5 * k - 860.0] for k in (5, 0, 6, 1, 4, 2)])  # slice 3 is missing
-    leaning = np.array([[0.0, 0.0, 2.5 * k / np.cos(tilt)] for k in range(6)])
+    upright = np.array([[0.0, 0.0, 3.0 * k] for k in range(6)])
+    # slice 3 is missing, and one lies too close to slice 6
+    shuffled = np.array([[-100.0, -140.0, 2.5 * k - 860.0] for k in (5, -0.2, 6, 1, 6.4, 4, 2)])
+    leaning = np.array([[0.0, 0.0, 1.25 * k / np.cos(tilt)] for k in range(6)])
     return [(upright, np.array([0.0, 0.0, 1.0])), (shuffled, np.array([0.0, 0.0, 1.0])), (leaning, normal)]
 
 
@@ -54,11 +55,36 @@ EXERCISES: dict[str, Exercise] = {
                 lambda h, c, w: _grey(h, c, 2 * w),
                 "This window is twice too wide: it reaches width / 2 to each side of the centre.",
             ),
+            (
+                lambda h, c, w: np.clip((h - c + w) / w, 0, 1) * 255,
+                "The window starts at centre - width / 2, not at centre - width.",
+            ),
+            (
+                lambda h, c, w: np.clip((h - c + w / 2) / (w / 2), 0, 1) * 255,
+                "The window is width wide, from low to high: divide by width, not by width / 2.",
+            ),
+            (lambda h, c, w: np.clip(h, c - w / 2, c + w / 2), "These are still HU, clipped; scale them to 0 to 255."),
+            (
+                lambda h, c, w: (h - h.min()) / np.ptp(h) * 255,
+                "This stretches the whole range of the slice; the window is chosen by centre and width.",
+            ),
+            (
+                lambda h, c, w: (h > c) * 255,
+                "This is black and white only: between the ends of the window grey rises evenly.",
+            ),
+            (
+                lambda h, c, w: np.clip((h - c - w / 2) / w, 0, 1) * 255,
+                "The window starts at centre - width / 2, not at centre + width / 2.",
+            ),
+            (
+                lambda h, c, w: np.clip((h - c + w / 2) * 255, 0, 255),
+                "Divide by width: at the high end the window has come to 255.",
+            ),
         ),
         hints=(
             "Where is 0? At centre - width / 2.",
             "Scale to 0..1 and use np.clip.",
-            "np.clip((hu - low) / width, 0, 1) * 255",
+            "np.clip(x, 0, 1) cuts off: what must x be at the low end of the window, and what at its high end?",
         ),
         praise="the window shows what it should.",
     ),
@@ -77,11 +103,25 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, i: (np.linalg.norm(a[:3, :3], axis=0) * i)[::-1] + a[:3, 3],
                 "Spacing alone is not enough: these rows and columns are turned, and only the matrix knows.",
             ),
+            (
+                lambda a, i: a @ np.append(i, 1),
+                "Four numbers: the last is the 1 that was added to the index; leave it out.",
+            ),
+            (lambda a, i: a[:3, :3] @ (i + a[:3, 3]), "First the steps, then the origin: it is in mm already."),
+            (lambda a, i: a[:3, :3] * i + a[:3, 3], "`*` multiplies number by number; a matrix times a vector is `@`."),
+            (lambda a, i: a[:3, :3] @ i - a[:3, 3], "The origin is added, not taken away."),
+            (lambda a, i: a[:3, 3], "This is the place of voxel (0, 0, 0): add the steps of the index."),
+            (lambda a, i: i + a[:3, 3], "These are still voxels, moved: a step has a length and a direction in mm."),
+            (lambda a, i: a[:3, :3] @ (i + 0.5) + a[:3, 3], "Half a voxel off: an index is the centre of its voxel."),
+            (
+                lambda a, i: (a[:3, :3] @ i + a[:3, 3])[::-1],
+                "These are z, y, x: the matrix gives x, y, z already, do not turn them round.",
+            ),
         ),
         hints=(
             "A point is the origin plus steps.",
             "Columns of affine[:3, :3] are steps.",
-            "affine[:3, :3] @ index + affine[:3, 3]",
+            "`@` adds up the steps of an index; the origin is the fourth column.",
         ),
         praise="every voxel knows its place in the patient.",
     ),
@@ -107,11 +147,36 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p, n: np.mean(np.diff(np.sort(p @ n))),
                 "A slice may be missing: its gap pulls the mean up, but not the median.",
             ),
+            (
+                lambda p, n: np.diff(np.sort(p @ n)).min(),
+                "This is the smallest step, and one slice lies too close: take the median.",
+            ),
+            (
+                lambda p, n: np.diff(np.sort(p @ n)).max(),
+                "This is the largest step, and a slice is missing there: take the median.",
+            ),
+            (
+                lambda p, n: np.diff(np.sort(p @ n))[0],
+                "This is the first step only, and one slice may be out of place: take the median of all.",
+            ),
+            (lambda p, n: np.diff(np.sort(p @ n)), "These are all the steps: one number is wanted, their median."),
+            (
+                lambda p, n: np.median(p @ n),
+                "This is the median height; wanted are the differences between neighbours.",
+            ),
+            (
+                lambda p, n: np.ptp(p @ n) / len(p),
+                "n slices have n - 1 steps between them, and a mean pays for each odd one.",
+            ),
+            (
+                lambda p, n: np.median(np.linalg.norm(np.diff(p, axis=0), axis=1)),
+                "Files come in any order: sort the heights first.",
+            ),
         ),
         hints=(
             "The height of a slice is positions @ normal.",
             "Sort, then np.diff.",
-            "np.median(np.diff(np.sort(positions @ normal)))",
+            "Sorted heights, their differences, the median of these.",
         ),
         praise="the distance between slices comes from their places.",
     ),

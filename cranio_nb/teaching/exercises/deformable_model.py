@@ -10,7 +10,7 @@ from ...curves import cubic, spiral
 from ...stages.deformable_model import inflate
 from .task import Answer, Exercise, small_head
 
-_PX = 0.45  # mm: the paper's pixel
+_PX = 0.45  # mm: 512 pixels over a head
 
 
 def _pressures():
@@ -51,11 +51,23 @@ def _tangent_pressure(length, theta0, theta1, n):
 def _relaxed(length, theta0, theta1, n, k, steps=None):
     """The balloon at rest under k; its end slopes are per one of `steps`, N if not given."""
     slopes = np.array([[length, length * np.tan(t)] for t in (theta0, theta1)]) / (steps or n - 1)
-    return inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve
+    return _inflated(length, theta0, theta1, n, k, *slopes.ravel())
+
+
+@cache
+def _inflated(length, theta0, theta1, n, k, *slopes):
+    """The balloon at rest; known mistakes ask for the same ones again and again."""
+    return inflate(cubic(length, theta0, theta1, n), np.reshape(slopes, (2, 2)), pressure=k).curve
 
 
 def _at_rest(length, theta0, theta1, n, steps=None):
     return _relaxed(length, theta0, theta1, n, _tangent_pressure(length, theta0, theta1, n), steps)
+
+
+def _with_slopes(length, theta0, theta1, n, slopes):
+    """The balloon at rest under the right k with other end slopes."""
+    k = _tangent_pressure(length, theta0, theta1, n)
+    return _inflated(length, theta0, theta1, n, k, *np.ravel(slopes))
 
 
 def _mirrored(length, theta0, theta1, n):
@@ -72,6 +84,16 @@ EXERCISES: dict[str, Exercise] = {
             (lambda k, n: k * (n - 1) ** 2 / 2, "Four times too high: where along the curve does the apex lie?"),
             (lambda k, n: k * (n - 1) ** 2, "Too high: the parabola has a factor of its own, and its apex a place."),
             (lambda k, n: -k * (n - 1) ** 2 / 8, "With k > 0 outward the apex lies outside: it is positive."),
+            (lambda k, n: k * (n + 1) ** 2 / 8, "N counts the steps between snaxels: N = n - 1."),
+            (lambda k, n: k * (n - 1) / 8, "N is squared: twice as many steps, four times the height."),
+            (lambda k, n: k * n / 8, "N is squared, and counts the steps: N = n - 1."),
+            (lambda k, n: k * (n - 1) * (n - 2) / 8, "The parabola is i (N - i): at its middle both are N / 2."),
+            (lambda k, n: (n - 1) ** 2 / 8, "The pressure is missing: twice the wind, twice the height."),
+            (
+                lambda k, n: k * (n - 1) ** 2 / 8 * _PX,
+                "This is in mm of the paper's pixel; the height is wanted in px.",
+            ),
+            (lambda k, n: k * (n - 2) ** 2 / 8, "N counts the steps between snaxels: N = n - 1."),
         ),
         hints=("At rest c'' = -k, with the end heights 0.", "c(i) = k i (N - i) / 2.", "Put i = N / 2, and N = n - 1."),
         praise="the apex does not know the width of the gap.",
@@ -103,6 +125,29 @@ EXERCISES: dict[str, Exercise] = {
                 lambda L, a, b, n: L * (a + np.pi - b) / (n - 1) ** 2,
                 "These are angles above the chord; the slope is the tangent of an angle, and not quite the same.",
             ),
+            (
+                lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / (n - 1),
+                "N is squared: once for the steps that share the change, once for the length of a step.",
+            ),
+            (lambda L, a, b, n: (np.tan(a) - np.tan(b)) / (n - 1), "The length of a step is missing: L / N px."),
+            (
+                lambda L, a, b, n: L * np.tan(a) / (n - 1) ** 2,
+                "Only the first end is used: the slope falls from tan theta0 to tan theta1.",
+            ),
+            (
+                lambda L, a, b, n: 2 * L * np.tan(a) / (n - 1) ** 2,
+                "The first end is taken for both: the gap need not be symmetric.",
+            ),
+            (lambda L, a, b, n: L * (np.sin(a) - np.sin(b)) / (n - 1) ** 2, "A slope is a tangent, not a sine."),
+            (
+                lambda L, a, b, n: L**2 * (np.tan(a) - np.tan(b)) / (n - 1) ** 2,
+                "The length comes in once: a slope has no unit, a step has L / N px.",
+            ),
+            (
+                lambda L, a, b, n: L * np.tan(a - b) / (n - 1) ** 2,
+                "The difference of the two slopes is wanted, not the slope of the difference.",
+            ),
+            (lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / n, "N is squared, and counts the steps: N = n - 1."),
         ),
         hints=(
             "The slope changes from tan theta0 to tan theta1 over N steps.",
@@ -119,6 +164,7 @@ EXERCISES: dict[str, Exercise] = {
             unit="mm",
             tolerance=0.1,
             error=_mm_off,
+            shows=(np.asarray, "px"),
         ),
         mistakes=(
             (
@@ -155,11 +201,45 @@ EXERCISES: dict[str, Exercise] = {
                 lambda L, a, b, n: _at_rest(L, a, b, n, 1),
                 "The end slopes are for the whole gap; inflate wants them per snaxel: divide by n - 1.",
             ),
+            (
+                lambda L, a, b, n: _with_slopes(L, a, b, n, [[1, np.tan(a)], [1, np.tan(b)]]),
+                "The end slopes are too small: one step along is L / N px, not 1 px.",
+            ),
+            (
+                lambda L, a, b, n: _with_slopes(L, a, b, n, np.array([[1, np.tan(a)], [1, np.tan(b)]]) / (n - 1)),
+                "The end slopes are far too small: one step along is L / N px.",
+            ),
+            (
+                lambda L, a, b, n: _with_slopes(
+                    L, a, b, n, np.array([[L, L * np.tan(b)], [L, L * np.tan(a)]]) / (n - 1)
+                ),
+                "The end slopes are exchanged: theta0 belongs to the first end.",
+            ),
+            (
+                lambda L, a, b, n: _with_slopes(
+                    L, a, b, n, np.array([[L, L * np.tan(a)], [L, -L * np.tan(b)]]) / (n - 1)
+                ),
+                "The slope at the second end has the wrong sign: theta1 is obtuse, its tangent is negative already.",
+            ),
+            (
+                lambda L, a, b, n: _with_slopes(
+                    L, a, b, n, np.array([[L * np.tan(a), L], [L * np.tan(b), L]]) / (n - 1)
+                ),
+                "Along and out are exchanged in the end slopes: (along, out).",
+            ),
+            (
+                lambda L, a, b, n: _with_slopes(
+                    L, a, b, n, L * np.array([[np.cos(t), np.sin(t)] for t in (a, b)]) / (n - 1)
+                ),
+                "The slopes go with the chord: L / N along and L tan(theta) / N out, not cosine and sine.",
+            ),
+            (lambda L, a, b, n: _at_rest(L, a, b, n + 1), "There is a snaxel too many: n of them have n - 1 steps."),
+            (lambda L, a, b, n: _relaxed(L, a, b, n, 2 * _tangent_pressure(L, a, b, n)), "Blown twice too hard."),
         ),
         hints=(
             "Start with cubic(...), as in the lesson.",
             "deformable_model.inflate(start, end_slopes, pressure=k) wants the slopes per snaxel.",
-            "k = deformable_model.tangent_pressure(length, theta0, theta1, n)",
+            "deformable_model.tangent_pressure chooses k from the ends; inflate returns more than the curve.",
         ),
         praise="a balloon at rest, though the tangents were noisy and the start curve was poor.",
     ),

@@ -11,6 +11,7 @@ from .task import Answer, Exercise
 def _clouds():
     grid = np.stack(np.meshgrid(np.arange(20.0), np.arange(20.0), [0.0]), axis=-1).reshape(-1, 3)
     bump = grid.copy()
+    bump[:, 2] += np.linspace(0.0, 1.6, len(grid))  # so that no two percentiles agree
     bump[::25, 2] += 6.0
     left, right = grid[grid[:, 0] < 12], grid[grid[:, 0] >= 4]
     return [(left, right + np.array([0.0, 0.0, 1.5])), (bump, grid), (grid, left)]
@@ -18,6 +19,11 @@ def _clouds():
 
 def _both_ways(a, b):
     return np.concatenate([cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]])
+
+
+def _percentiles(a, b):
+    """One for each way."""
+    return [np.percentile(cKDTree(other).query(one)[0], 95) for one, other in ((a, b), (b, a))]
 
 
 def _planes():
@@ -62,11 +68,37 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, b: np.percentile(np.linalg.norm(a[:, None] - b[None], axis=-1), 95),
                 "This takes every pair of points; wanted is the distance to the nearest one.",
             ),
+            (
+                lambda a, b: min(_percentiles(a, b)),
+                "This is the smaller of two percentiles; join the distances, then take one.",
+            ),
+            (
+                lambda a, b: sum(_percentiles(a, b)) / 2,
+                "This is the mean of two percentiles (some papers do so); join the distances, then take one.",
+            ),
+            (lambda a, b: np.median(_both_ways(a, b)), "This is the median; HD95 leaves out only the worst 5 percent."),
+            (lambda a, b: np.percentile(_both_ways(a, b), 5), "The worst 5 percent are left out, not the best: 95."),
+            (
+                lambda a, b: 0.95 * _both_ways(a, b).max(),
+                "95 percent of the largest distance; wanted is the distance that 95 percent of the points keep.",
+            ),
+            (_both_ways, "These are all distances: take their 95th percentile."),
+            (
+                lambda a, b: np.percentile(cKDTree(b).query(a)[1], 95),
+                "query gives distances and numbers of points: [0] are the distances.",
+            ),
+            (lambda a, b: np.percentile(_both_ways(a, b) ** 2, 95), "These are squares of distances."),
+            (lambda a, b: cKDTree(b).query(a)[0].max(), "This is the largest distance, one way only."),
+            (lambda a, b: cKDTree(b).query(a)[0].mean(), "This is the mean distance, one way only."),
+            (
+                lambda a, b: np.percentile(cKDTree(b).query(a, k=2)[0], 95),
+                "k=2 takes the second nearest point too, and this is one way only.",
+            ),
         ),
         hints=(
             "spatial.cKDTree(b).query(a)[0] are the distances from a to b.",
             "Take both ways and join them.",
-            "np.percentile(np.concatenate([...]), 95)",
+            "np.concatenate joins the two ways; np.percentile counts to 100.",
         ),
         praise="missing parts count as much as extra ones.",
     ),
@@ -107,11 +139,43 @@ EXERCISES: dict[str, Exercise] = {
             (lambda p, n, o: np.flip(p), "np.flip turns arrays round, it knows of no plane: measure from it."),
             (lambda p, n, o: p * [-1, 1, 1], "This mirrors at x = 0; the head stands aside and leans."),
             (lambda p, n, o: 2 * o - p, "This is a point reflection: only the part along the normal may change sign."),
+            (
+                lambda p, n, o: p - (p @ n)[:, None] * n,
+                "The points stop on a plane through 0, 0, 0: go twice as far, and measure from the origin given.",
+            ),
+            (lambda p, n, o: p - 2 * n, "All points are moved by the same step: each goes twice its own distance."),
+            (
+                lambda p, n, o: p - 2 * (p - o) * n,
+                "The distance is a dot product, (points - origin) @ normal; this multiplies axis by axis.",
+            ),
+            (
+                lambda p, n, o: o - 2 * ((p - o) @ n)[:, None] * n,
+                "The steps are taken off the origin; take them off the points.",
+            ),
+            (lambda p, n, o: -2 * ((p - o) @ n)[:, None] * n, "These are the steps alone; add them to the points."),
+            (
+                lambda p, n, o: (p - o) @ n,
+                "These are the distances from the plane; go back twice as far along the normal.",
+            ),
+            (lambda p, n, o: p - 2 * ((p + o) @ n)[:, None] * n, "Measure from the origin: points - origin."),
+            (
+                lambda p, n, o: p * (1 - 2 * n),
+                "This turns single axes round; a leaning plane mixes them: measure along the normal.",
+            ),
+            (lambda p, n, o: -p, "This is a point reflection: only the part along the normal may change sign."),
+            (
+                lambda p, n, o: p - 2 * ((p - o) @ n),
+                "Distances taken off coordinates: go along the normal, distance[:, None] * normal.",
+            ),
+            (
+                lambda p, n, o: p - 2 * np.linalg.norm(p - o, axis=1)[:, None] * n,
+                "This is the distance from the origin given; from the plane it is (points - origin) @ normal.",
+            ),
         ),
         hints=(
             "How far is a point from the plane? (points - origin) @ normal.",
             "Go back twice that far along the normal.",
-            "points - 2 * distance[:, None] * normal",
+            "One distance for each point: distance[:, None] makes them a column that can be multiplied by the normal.",
         ),
         praise="the sound side has crossed the plane.",
     ),

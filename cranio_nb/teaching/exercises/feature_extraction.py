@@ -24,10 +24,16 @@ def _rolled_edge(bone):
     return bone & ~np.logical_and.reduce(sides)
 
 
+def _without_frame(bone):
+    edge = np.zeros_like(bone)
+    edge[1:-1, 1:-1] = _inner_edge(bone)[1:-1, 1:-1]
+    return edge
+
+
 def _clouds():
     t = np.linspace(-10.0, 10.0, 41)
-    wave = 0.3 * np.cos(9 * t)
-    wave[[0, -1]] += [2.0, -2.0]  # the line from the first point to the last is not the nearest to all
+    wave = 1.2 * np.cos(9 * t)  # so wide that a fit along one axis leans, even along the better one
+    wave[[0, -1]] = [2.0, -2.0]  # the line from the first point to the last is not the nearest to all
     clouds = []
     for angle in (0.0, 90.0, 145.0):
         c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
@@ -47,6 +53,13 @@ def _by_slope(points):
 def _by_slope_of_rows(points):
     slope = np.polyfit(points[:, 1], points[:, 0], 1)[0]
     return np.array([slope, 1.0])
+
+
+def _by_better_slope(points):
+    """The polyfit that leaves less, along its own axis."""
+    (slope, _), left, *_ = np.polyfit(points[:, 0], points[:, 1], 1, full=True)
+    (other, _), left_other, *_ = np.polyfit(points[:, 1], points[:, 0], 1, full=True)
+    return np.array([1.0, slope]) if left[0] < left_other[0] else np.array([other, 1.0])
 
 
 def _spines():
@@ -81,6 +94,32 @@ EXERCISES: dict[str, Exercise] = {
                 lambda b: b & ~ndimage.binary_erosion(b, np.ones((3, 3))),
                 "Use the cross of 4 neighbours; the square takes corners twice.",
             ),
+            (lambda b: ~ndimage.binary_erosion(b), "All the background is in it: keep what is bone and not inside."),
+            (
+                lambda b: b ^ ndimage.binary_erosion(b) | ~b,
+                "All the background is in it: keep what is bone and not inside.",
+            ),
+            (
+                lambda b: ndimage.binary_dilation(b) & b,
+                "A dilation grows: bone and its dilation is the bone itself. Which pixels does an erosion take away?",
+            ),
+            (
+                lambda b: b & ~ndimage.binary_erosion(b, iterations=2),
+                "This band is two pixels wide: one erosion is enough.",
+            ),
+            (lambda b: np.argwhere(_inner_edge(b)), "These are places; a mask of the image's shape is wanted."),
+            (
+                _without_frame,
+                "The outermost rows and columns are left out: bone there is boundary, outside the image is none.",
+            ),
+            (
+                lambda b: np.diff(b.astype(int), axis=0, prepend=0) != 0,
+                "One axis only, and half of the edges outside the bone: look at all four neighbours.",
+            ),
+            (
+                lambda b: np.gradient(b.astype(float))[0] != 0,
+                "One axis only, and two pixels wide: look at all four neighbours.",
+            ),
         ),
         hints=(
             "Which pixels does an erosion take away?",
@@ -92,7 +131,13 @@ EXERCISES: dict[str, Exercise] = {
     "3.2": Exercise(
         cases=_clouds,
         right=_line,
-        answer=Answer("one direction: two numbers (row, col)", unit="degrees", tolerance=0.5, error=degrees_apart),
+        answer=Answer(
+            "one direction: two numbers (row, col)",
+            unit="degrees",
+            tolerance=0.5,
+            error=degrees_apart,
+            shows=(lambda d: np.degrees(np.arctan2(d[1], d[0])) % 180, "degrees (0: along a column, 90: along a row)"),
+        ),
         mistakes=(
             (_by_slope, "A slope of col over row fails for points along a row: no such line stands upright."),
             (
@@ -101,7 +146,7 @@ EXERCISES: dict[str, Exercise] = {
             ),
             (
                 lambda p: np.linalg.svd(p)[2][0],
-                "The points are not centred: this looks at the origin. Subtract the mean.",
+                "The points are not centred: this looks from 0, 0 to them. Subtract the mean.",
             ),
             (lambda p: np.linalg.svd(p - p.mean(axis=0))[2][1], "This is the normal, the direction of least spread."),
             (lambda p: _line(p)[::-1], "Row and column are swapped."),
@@ -112,6 +157,42 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p: p[-1] - p[0],
                 "From the first point to the last: the noise of these two turns the line. Fit all points.",
+            ),
+            (
+                _by_better_slope,
+                "The better of two np.polyfit measures along one axis all the same, and leans: use the SVD.",
+            ),
+            (
+                lambda p: np.linalg.svd(p - p.mean())[2][0],
+                "p.mean() is one number for rows and columns together: the centre is p.mean(axis=0).",
+            ),
+            (
+                lambda p: np.linalg.svd(p - p.mean(axis=1, keepdims=True))[2][0],
+                "This centres each point by itself: the centre is the mean of all, axis=0.",
+            ),
+            (
+                lambda p: np.linalg.svd(p - p.mean(axis=0))[2][:, 0],
+                "Directions are the rows of the third array, not its columns: [2][0].",
+            ),
+            (
+                lambda p: np.linalg.svd(p - p.mean(axis=0))[0][0],
+                "The first array has a row for each point; directions are the rows of the third.",
+            ),
+            (
+                lambda p: np.linalg.svd(p - p.mean(axis=0))[2],
+                "These are both directions; return the one of largest spread.",
+            ),
+            (
+                lambda p: np.ptp(p, axis=0),
+                "Height and width of the cloud have no sign, and rest on its outermost points. Fit all points.",
+            ),
+            (
+                lambda p: np.median(np.diff(p, axis=0), axis=0),
+                "From point to point the noise is as long as the step. Fit all points at once.",
+            ),
+            (
+                lambda p: p.std(axis=0),
+                "The spreads of rows and columns have no sign: a line that falls looks like one that rises.",
             ),
         ),
         hints=(
@@ -136,6 +217,44 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p: np.concatenate([[0.0], np.cumsum(np.abs(np.diff(p, axis=0)).sum(axis=1))]),
                 "This adds rows and columns; a step is the root of the sum of squares.",
             ),
+            (
+                lambda p: np.diff(_arc_length(p)),
+                "These are the lengths of the steps: add them up, and put a 0 in front.",
+            ),
+            (
+                lambda p: np.append(0.0, np.diff(_arc_length(p))),
+                "These are the lengths of the steps, not yet added up: np.cumsum.",
+            ),
+            (
+                lambda p: _arc_length(p)[-1],
+                "This is the whole length; wanted is the length up to each point: np.cumsum, not sum.",
+            ),
+            (
+                lambda p: np.append(0.0, np.cumsum((np.diff(p, axis=0) ** 2).sum(axis=1))),
+                "The root is missing: a step is the root of the sum of squares.",
+            ),
+            (
+                lambda p: np.append(_arc_length(p)[1:], _arc_length(p)[-1]),
+                "The 0 belongs in front, for the first point; the last length is there once.",
+            ),
+            (
+                lambda p: _arc_length(p) / _arc_length(p)[-1],
+                "This is the part of the whole way, 0 to 1; wanted is its length.",
+            ),
+            (
+                lambda p: np.cumsum(np.linalg.norm(p, axis=1)),
+                "These are distances from 0, 0; a step is the difference of neighbours: np.diff.",
+            ),
+            (lambda p: np.linalg.norm(p - p[0]), "One number for all: take the norm along axis=1, and of the steps."),
+            (
+                lambda p: np.cumsum(np.abs(np.diff(p, axis=0)).max(axis=1)),
+                "This takes the longer side of each step, and no 0 in front: a step is the root of the sum of squares.",
+            ),
+            (
+                lambda p: np.append(0.0, np.cumsum(np.abs(np.diff(p, axis=0)).max(axis=1))),
+                "This takes the longer side of each step; a step is the root of the sum of squares.",
+            ),
+            (lambda p: np.arange(len(p)) * np.sqrt(2), "Not every step is a diagonal: take the length of each."),
         ),
         hints=(
             "np.diff gives the steps.",

@@ -34,6 +34,11 @@ def _range(slices, key, side):
     return min(_values(slices, key, side)), max(_values(slices, key, side))
 
 
+def _by_plane(slices, key, side):
+    values = _values(sorted(slices, key=lambda entry: entry["plane"]), key, side)
+    return values[0], values[-1]
+
+
 def _arcs():
     return [(50.0, 75.0), (20.0, 75.0), (70.0, 80.0)]
 
@@ -66,11 +71,39 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, k, i: (np.mean(_values(s, k, i)),) * 2,
                 "This is the mean; the paper's tables give smallest and largest.",
             ),
+            (
+                lambda s, k, i: (np.mean(_values(s, k, i)), np.std(_values(s, k, i))),
+                "These are mean and spread; the paper's tables give smallest and largest.",
+            ),
+            (
+                lambda s, k, i: (np.median(_values(s, k, i)),) * 2,
+                "This is the median; the paper's tables give smallest and largest.",
+            ),
+            (
+                lambda s, k, i: _range([dict(x, status="balloon") for x in s if not _has(x)], k, i),
+                'These are the slices without a balloon: status == "balloon".',
+            ),
+            (
+                lambda s, k, i: max(_values(s, k, i)) - min(_values(s, k, i)),
+                "This is how far they spread: return the smallest and the largest.",
+            ),
+            (lambda s, k, i: sorted(_values(s, k, i)), "All values in order: return the first and the last of them."),
+            (
+                lambda s, k, i: (min(x[k] for x in s if _has(x)), max(x[k] for x in s if _has(x))),
+                "`side` is not used: s[key] holds outer and inner, take s[key][side].",
+            ),
+            (lambda s, k, i: min(_values(s, k, i)), "Only the smallest: return both, smallest and largest."),
+            (lambda s, k, i: max(_values(s, k, i)), "Only the largest: return both, smallest and largest."),
+            (
+                lambda s, k, i: (min(x["plane"] for x in s if _has(x)), max(x["plane"] for x in s if _has(x))),
+                "These are numbers of planes: take s[key][side].",
+            ),
+            (_by_plane, "These are the values of the lowest and the highest slice: take min and max of the values."),
         ),
         hints=(
             "Which slices have a balloon? Look at their status.",
             "Take s[key][side] of those.",
-            "min(values), max(values)",
+            "min and max of these; give both back, the smaller first.",
         ),
         praise="a row of Tables 1 and 2.",
     ),
@@ -92,11 +125,48 @@ EXERCISES: dict[str, Exercise] = {
                 lambda c, r: np.degrees(2 * np.arcsin(c / 2 / r)),
                 "This is the angle at the centre; the tangent leans by half of it.",
             ),
+            (
+                lambda c, r: np.degrees(np.arccos(c / 2 / r)),
+                "This is the angle to the radius; the tangent stands at a right angle to it: a sine.",
+            ),
+            (lambda c, r: 180 - np.degrees(np.arcsin(c / 2 / r)), "This is theta1, the obtuse angle at the other end."),
+            (
+                lambda c, r: np.degrees(c / 2 / r),
+                "This takes the angle for its sine: right for small gaps only. Use np.arcsin.",
+            ),
+            (
+                lambda c, r: np.degrees(c / r),
+                "This takes the chord for the arc, and the whole for the half: sin theta = (chord / 2) / radius.",
+            ),
+            (lambda c, r: np.sin(c / 2 / r), "(chord / 2) / radius is the sine; the angle is its np.arcsin."),
+            (
+                lambda c, r: np.degrees(np.sin(c / 2 / r)),
+                "(chord / 2) / radius is the sine; the angle is its np.arcsin.",
+            ),
+            (
+                lambda c, r: np.degrees(np.arctan2(c, r)),
+                "Half the chord over the radius is a sine: the radius is the long side of that triangle.",
+            ),
+            (lambda c, r: np.degrees(np.arcsin(c / 4 / r)), "Halved twice: half the chord over the radius."),
+            (
+                lambda c, r: np.degrees(np.arcsin(c / 2 / r)) / 2,
+                "Halved twice: theta itself is the angle whose sine is half the chord over the radius.",
+            ),
+            (
+                lambda c, r: np.radians(np.arcsin(c / 2 / r)),
+                "np.radians goes from degrees to radians; the other way is np.degrees.",
+            ),
+            (lambda c, r: np.arctan(c / 2 / r), "A sine, not a tangent; and in degrees."),
+            (lambda c, r: c / 2 / r, "This is the sine of the angle: np.arcsin, in degrees."),
+            (
+                lambda c, r: np.degrees(2 * np.arctan(c / 2 / r)),
+                "A sine, not a tangent; and theta itself, not the angle at the centre.",
+            ),
         ),
         hints=(
             "Draw the radius to one end and to the middle of the chord.",
             "sin theta = (chord / 2) / radius.",
-            "np.degrees(np.arcsin(chord / 2 / radius))",
+            "Solve for theta: np.arcsin gives radians.",
         ),
         praise="with the radius, an angle says how wide a gap was.",
     ),

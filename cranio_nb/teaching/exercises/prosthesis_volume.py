@@ -22,12 +22,17 @@ def _area(outline):
     return abs(row @ np.roll(col, -1) - col @ np.roll(row, -1)) / 2
 
 
+def _enclosed_mm2(outline):
+    """Area that an outline in px of 1.75 mm encloses."""
+    return _area(np.asarray(outline, float)) * 1.75**2
+
+
 def _outline_error(answer, right):
-    """Difference of the enclosed areas in mm2 (px of 1.75 mm)."""
+    """Difference of the enclosed areas, mm2."""
     outline = np.asarray(answer, float)
     if outline.ndim != 2 or outline.shape[1] != 2:
         return float("inf")
-    return abs(_area(outline) - _area(right)) * 1.75**2
+    return abs(_enclosed_mm2(outline) - _enclosed_mm2(right))
 
 
 def _regions():
@@ -39,11 +44,12 @@ def _dented():
     row, col = np.indices((90, 90)) - 45
     ring = (np.hypot(row, col) < 38) & (np.hypot(row, col) > 28)
     dent = ring & ~((row < -31) & (np.abs(col) < 9))
-    speck = dent.copy()
+    speck = dent & ~((col < -33) & (np.abs(row) < 7))
     speck[82, 43:47] = False
     pits = (col >= 33) & (col < 35) & (row >= -6) & (row < 0) | (col >= 35) & (col < 37) & (row >= 0) & (row < 6)
     size = np.bincount(ndimage.label(convex_hull_image(dent) & ~dent)[0].ravel())
-    return [(dent, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]  # just enough; an island; a corner
+    # just enough; two dents and an island; a region that holds together at a corner only
+    return [(dent, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]
 
 
 def _lost(bone, min_pixels, touching=_CORNERS):
@@ -53,6 +59,24 @@ def _lost(bone, min_pixels, touching=_CORNERS):
     keep = sizes >= min_pixels
     keep[sizes.argmax()] = False
     return keep[labels]
+
+
+def _regions_of(bone):
+    """Labels of the regions between hull and bone, and their sizes, 0 for the rest."""
+    labels, _ = ndimage.label(convex_hull_image(bone) & ~bone, _CORNERS)
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return labels, sizes
+
+
+def _only(bone, place):
+    labels, sizes = _regions_of(bone)
+    return labels == np.argsort(sizes)[place]
+
+
+def _small_regions(bone, min_pixels):
+    labels, sizes = _regions_of(bone)
+    return (sizes < min_pixels)[labels] & (labels > 0)
 
 
 def _with_cavity(bone, min_pixels, touching=_CORNERS):
@@ -66,7 +90,13 @@ EXERCISES: dict[str, Exercise] = {
     "5.1": Exercise(
         cases=_curves,
         right=lambda outer, inner: np.concatenate([outer, inner[::-1]]),
-        answer=Answer("an array (n, 2) of (row, col)", unit="mm2", tolerance=0.01, error=_outline_error),
+        answer=Answer(
+            "an array (n, 2) of (row, col)",
+            unit="mm2",
+            tolerance=0.01,
+            error=_outline_error,
+            shows=(_enclosed_mm2, "mm2 enclosed"),
+        ),
         mistakes=(
             (
                 lambda o, i: np.concatenate([o, i]),
@@ -74,11 +104,23 @@ EXERCISES: dict[str, Exercise] = {
             ),
             (lambda o, i: o, "This closes the outer curve by its chord; the inner curve is missing."),
             (lambda o, i: i, "This closes the inner curve by its chord; the outer curve is missing."),
+            (lambda o, i: (o + i) / 2, "This is the middle between the curves; the outline walks along both."),
+            (lambda o, i: np.concatenate([o, i], axis=1), "Joined side by side, (n, 4): join them end to end, axis=0."),
+            (
+                lambda o, i: np.concatenate([o, i[::-1]], axis=1),
+                "Joined side by side, (n, 4): join them end to end, axis=0.",
+            ),
+            (
+                lambda o, i: np.concatenate([o, i[:, ::-1]]),
+                "This swaps row and col of the inner curve; its order is to be turned: [::-1].",
+            ),
+            (lambda o, i: o + i[::-1], "This adds the coordinates; np.concatenate joins the points."),
+            (lambda o, i: o - i, "This is the step from curve to curve; np.concatenate joins the points."),
         ),
         hints=(
             "Walk along the outer curve, then back along the inner one.",
             "inner[::-1] is the inner curve from its end.",
-            "np.concatenate([outer, inner[::-1]])",
+            "np.concatenate joins arrays that stand in one list.",
         ),
         praise="an outline that goes round once.",
     ),
@@ -94,8 +136,32 @@ EXERCISES: dict[str, Exercise] = {
             ),
             (lambda r, b: r & b, "This is just the part that must go."),
             (lambda r, b: r | b, "This is the repaired slice; the patch is what is new in it."),
+            (lambda r, b: b & ~r, "Turned round: this is bone outside the region."),
+            (
+                lambda r, b: ~(r & b),
+                "This is nearly the whole picture: the region must be in it, and only the bone not.",
+            ),
+            (
+                lambda r, b: ~b,
+                "This is everything that is not bone: only what lies in the region belongs to the patch.",
+            ),
+            (lambda r, b: ~r, "This is everything outside the region."),
+            (lambda r, b: b, "This is the bone that is there already."),
+            (lambda r, b: r.astype(int) - b, "Numbers with -1 among them: masks are joined by & and ~."),
+            (
+                lambda r, b: r & ~ndimage.binary_dilation(b),
+                "A pixel is left free all round the bone: the patch begins where bone ends.",
+            ),
+            (
+                lambda r, b: r & ~ndimage.binary_erosion(b),
+                "The edge of the bone is still in it: take all the bone away.",
+            ),
         ),
-        hints=("What is in the region and not in the bone?", "~bone is everything that is not bone.", "region & ~bone"),
+        hints=(
+            "What is in the region and not in the bone?",
+            "~bone is everything that is not bone.",
+            "`&` holds where both masks hold.",
+        ),
         praise="nothing is designed where bone is.",
     ),
     "5.3": Exercise(
@@ -123,11 +189,22 @@ EXERCISES: dict[str, Exercise] = {
                 lambda b, m: ndimage.binary_fill_holes(b) & ~b,
                 "Filling holes finds the cavity, not the dent: use the convex hull.",
             ),
+            (
+                lambda b, m: _only(b, -2),
+                "This is the second biggest region alone; every region of min_pixels and more stays.",
+            ),
+            (lambda b, m: _only(b, -1), "This is the biggest region, the brain's place: it is the one to drop."),
+            (
+                lambda b, m: convex_hull_image(b),
+                "This is the whole hull: take the bone away, then the biggest region and the islands.",
+            ),
+            (lambda b, m: _lost(b, m) | b, "This is the mended ring; the patch is what is new in it."),
+            (lambda b, m: _small_regions(b, m), "These are the small islands: they go, the larger regions stay."),
         ),
         hints=(
-            "morphology.convex_hull_image(bone) & ~bone, then measure.label.",
+            "The hull (morphology.convex_hull_image) without the bone, then measure.label.",
             "Count each label; 0 is background.",
-            "keep = sizes >= min_pixels; keep[sizes.argmax()] = False; keep[labels]",
+            "Decide for each label whether it stays, the biggest not; that array, taken at labels, is the mask.",
         ),
         praise="only the dent is left (the paper's Fig. 6d).",
     ),

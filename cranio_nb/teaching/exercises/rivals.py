@@ -19,17 +19,24 @@ def _pairs():
     ):
         n = np.array(normal)
         found.append((a, a - 2 * ((a - point) @ n)[:, None] * n))
-    # many pairs with errors of measurement, which add up to nothing: the first pair alone is 4 mm off
+    # many pairs with errors of measurement, which add up to nothing: each pair alone is 2 mm off along every axis
     grid = np.stack(np.meshgrid([40.0, 55.0, 70.0], [-60.0, -20.0, 20.0, 60.0], [-20.0, 20.0, 60.0]), axis=-1)
     many = grid.reshape(-1, 3)
-    errors = np.full_like(many, -4.0 / (len(many) - 1))
-    errors[0] = 4.0
+    errors = 2.0 * (-1.0) ** np.arange(len(many))[:, None]
     return [*found, (many, many - 2 * ((many - point) @ n)[:, None] * n + errors)]
 
 
 def _plane(a, b):
     across = (a - b).sum(axis=0)
     return across / np.linalg.norm(across), (a + b).mean(axis=0) / 2
+
+
+def _unit(vector):
+    return vector / np.linalg.norm(vector)
+
+
+def _each_unit(a, b):
+    return (a - b) / np.linalg.norm(a - b, axis=1, keepdims=True)
 
 
 def _first(a, b):
@@ -49,6 +56,13 @@ def _plane_error(answer, right):
         for n, p in (answer, right)
     ]
     return largest_difference(*images)
+
+
+def _normal_and_distance(plane):
+    """Four numbers that tell planes apart: the normal, its largest part positive, and how far 0, 0, 0 is."""
+    normal, point = (np.asarray(part, float) for part in plane)
+    normal = normal * np.sign(normal[np.abs(normal).argmax()])
+    return np.append(normal, point @ normal / np.linalg.norm(normal))
 
 
 def _caps():
@@ -78,7 +92,11 @@ EXERCISES: dict[str, Exercise] = {
         cases=_pairs,
         right=_plane,
         answer=Answer(
-            "two arrays of 3 numbers: the unit normal and a point", unit="mm", tolerance=0.2, error=_plane_error
+            "two arrays of 3 numbers: the unit normal and a point",
+            unit="mm",
+            tolerance=0.2,
+            error=_plane_error,
+            shows=(_normal_and_distance, "(normal, mm from 0, 0, 0)"),
         ),
         mistakes=(
             (lambda a, b: ((a - b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
@@ -96,6 +114,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, b: np.zeros(3),
                 "The plane need not pass through 0, 0, 0: a point half-way between a pair lies on it.",
             ),
+            (
+                lambda a, b: _first(a[::-1], b[::-1]),
+                "This rests on the last pair only, and a pair has its error: take all of them together.",
+            ),
             (_first, "This rests on the first pair only, and a pair has its error: take all of them together."),
             (
                 lambda a, b: (_first(a, b)[0], _plane(a, b)[1]),
@@ -109,11 +131,45 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, b: (np.array([1.0, 0.0, 0.0]), (a + b).mean(axis=0) / 2),
                 "This takes x for the normal; the head leans: the normal runs from one point of a pair to the other.",
             ),
+            (lambda a, b: _plane(a, b)[::-1], "Turned round: the normal comes first, then the point."),
+            (lambda a, b: _plane(a, b)[0], "The point is missing: return the normal and a point."),
+            (
+                lambda a, b: (_unit((a + b).mean(axis=0)), _plane(a, b)[1]),
+                "The normal runs from a point to its partner: the difference of the two, not their sum.",
+            ),
+            (
+                lambda a, b: (_plane(a, b)[0], (a - b).mean(axis=0) / 2),
+                "The point is half of the way across, not the place half-way: (a + b) / 2.",
+            ),
+            (
+                lambda a, b: (_unit(np.cross(a[0], b[0])), _plane(a, b)[1]),
+                "A cross product lies across both; the normal is the difference of partners.",
+            ),
+            (
+                lambda a, b: (np.linalg.svd((a + b) / 2 - _plane(a, b)[1])[2][0], _plane(a, b)[1]),
+                "This is the direction in which the middles spread, and that is in the plane.",
+            ),
+            (
+                lambda a, b: (_each_unit(a, b), (a + b) / 2),
+                "A normal and a point for each pair: one of each is wanted, the mean of all.",
+            ),
+            (
+                lambda a, b: (_plane(a, b)[0], b.mean(axis=0)),
+                "The plane passes through the points themselves: it lies half-way between the two of a pair.",
+            ),
+            (
+                lambda a, b: ((a - b).mean(axis=0) / np.linalg.norm(a - b), _plane(a, b)[1]),
+                "np.linalg.norm(a - b) is one number for all pairs: divide by the length of the mean.",
+            ),
+            (
+                lambda a, b: ((a - b).mean(axis=0) / (a - b).mean(axis=0).sum(), _plane(a, b)[1]),
+                "Divided by the sum of its parts: the length is np.linalg.norm.",
+            ),
         ),
         hints=(
             "Which way does one go from a point to its partner?",
             "The normal is the direction of a - b; half-way between a and b lies the plane.",
-            "d = (a - b).sum(axis=0); d / np.linalg.norm(d), (a + b).mean(axis=0) / 2",
+            "Add up the differences of all pairs, divide by the length of the sum; the point: the mean of the middles.",
         ),
         praise="the pairs' own plane, wherever the head lies.",
     ),
@@ -132,11 +188,31 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, h: np.pi * h * (3 * a**2 + h**2) / 6,
                 "This is the volume of the cap; divide it by the area of the hole.",
             ),
+            (lambda a, h: h * (3 * a**2 + h**2) / (6 * a), "The area of the lid grows with a squared."),
+            (lambda a, h: h * (3 * a**2 + h**2) / 6, "The area of the lid, pi a^2, is still to be divided by."),
+            (lambda a, h: np.pi * h * (3 * a**2 + h**2) / (6 * a**2), "pi is in the area too: it falls out."),
+            (
+                lambda a, h: h * (3 * a**2 + h**2) / (24 * a**2),
+                "a is the radius of the hole, and its area pi a^2, a quarter of this divisor.",
+            ),
+            (lambda a, h: h * (3 * a**2 + h**2) / (12 * a), "2 pi a is the rim of the lid, not its area."),
+            (
+                lambda a, h: h * (3 * a**2 + h**2) / (6 * (a**2 + h**2)),
+                "This is the area of the cap; the mean is taken over the flat lid.",
+            ),
+            (lambda a, h: (3 * a**2 + h**2) / (6 * h), "h is the height, not the radius of the lid: divide by pi a^2."),
+            (lambda a, h: h / 3, "This is the mean of a cone; the cap's own volume is given."),
+            (lambda a, h: h * (3 * a + h**2) / (6 * a**2), "In the volume of the cap a is squared."),
+            (lambda a, h: h * (3 * a**2 + h**2) / 6 * a**2, "Brackets: a^2 stands below the line."),
+            (
+                lambda a, h: np.sqrt(a**2 + h**2),
+                "This is the way from the top of the cap to its rim; wanted is volume / area.",
+            ),
         ),
         hints=(
             "Mean depth = volume between cap and lid / area of the lid.",
             "The cap's volume is pi h (3 a^2 + h^2) / 6, the lid's area pi a^2.",
-            "h * (3 * a**2 + h**2) / (6 * a**2)",
+            "Divide the one by the other: pi falls out, a^2 stays below.",
         ),
         praise="about half of the height, the price of a flat fill.",
     ),
@@ -158,11 +234,27 @@ EXERCISES: dict[str, Exercise] = {
                 "Only the inner edge was taken away; what it encloses is its hull.",
             ),
             (lambda b, i: convex_hull_image(i) & ~b, "This is the inside of the head."),
+            (
+                lambda b, i: convex_hull_image(b),
+                "This is the whole hull of the bone: take the brain's place and the bone away.",
+            ),
+            (lambda b, i: convex_hull_image(b) & ~i, "Only the inner edge was taken away, and bone is still in it."),
+            (
+                lambda b, i: ~convex_hull_image(i) & ~b,
+                "What lies outside the head is in it: stay within the hull of the bone.",
+            ),
+            (
+                lambda b, i: convex_hull_image(i) & ~convex_hull_image(b) & ~b,
+                "Turned round: the hull of the bone, without that of the inner edge.",
+            ),
+            (lambda b, i: convex_hull_image(b) & ~convex_hull_image(i) | b, "The bone is in it: & ~bone, not | bone."),
+            (lambda b, i: convex_hull_image(b) & convex_hull_image(i) & ~b, "This is the inside of the head."),
+            (lambda b, i: b, "This is the bone that is there already."),
         ),
         hints=(
             "One hull for the outside, one for the inside.",
             "convex_hull_image(inner) is the inside of the head.",
-            "convex_hull_image(bone) & ~convex_hull_image(inner) & ~bone",
+            "Three masks joined by `&`: which two of them with `~`?",
         ),
         praise="a lid where the paper's rule would give nothing.",
     ),

@@ -35,8 +35,13 @@ def _largest_of_slices_with_bone(mask):
     return _largest_of_slices(mask) & mask
 
 
+def _second_largest(mask):
+    labels, _ = ndimage.label(mask)
+    return labels == np.bincount(labels.ravel())[1:].argsort()[-2] + 1
+
+
 def _parts():
-    bone = small_head().bone
+    bone = small_head().bone[8:24]  # enough to see which part is large
     couch = bone.copy()
     couch[2:12, 120:123, 20:40] = True
     early = bone.copy()
@@ -71,6 +76,13 @@ def _fill_small(mask, max_pixels, **how):
     return mask | _holes(mask, max_pixels, **how)
 
 
+def _large_holes(mask, max_pixels):
+    labels, _ = ndimage.label(~mask)
+    large = np.bincount(labels.ravel()) > max_pixels
+    large[0] = False
+    return mask | large[labels]
+
+
 def _rings():
     row, col = np.indices((80, 80)) - 40
     ring = (np.hypot(row, col) < 30) & (np.hypot(row, col) > 22)
@@ -98,7 +110,7 @@ EXERCISES: dict[str, Exercise] = {
             (lambda m: ndimage.label(m)[0] == 1, "Label 1 is the part that is met first, not the largest."),
             (
                 lambda m: ndimage.label(m)[0] == np.bincount(ndimage.label(m)[0].ravel()).argmax(),
-                "The largest label is 0, the background: leave it out of the count.",
+                "This is the background, label 0: leave it out of the count.",
             ),
             (_largest_shifted, "bincount(...)[1:] begins with part 1: add 1 to its argmax."),
             *(
@@ -108,11 +120,33 @@ EXERCISES: dict[str, Exercise] = {
             (_largest_over_corners, "Voxels that share only an edge or a corner are not connected here."),
             (lambda m: m, "Nothing was dropped."),
             (lambda m: ndimage.binary_opening(m), "Opening eats thin bone; label the parts and choose one."),
+            (
+                lambda m: ndimage.label(m)[0],
+                "These are the numbers of the parts; a mask comes from comparing them: labels == one.",
+            ),
+            (
+                lambda m: ndimage.label(m)[0] == ndimage.label(m)[1],
+                "This is the part that is met last, not the largest.",
+            ),
+            (
+                lambda m: ndimage.label(m)[0] == np.bincount(ndimage.label(m)[0].ravel())[1:].max(),
+                "max gives the count, argmax the label that has it.",
+            ),
+            (
+                lambda m: np.bincount(ndimage.label(m)[0].ravel())[1:].argmax() + 1,
+                "This is the number of the largest part; return the mask of it.",
+            ),
+            (_second_largest, "This is the second largest part."),
+            (
+                lambda m: ndimage.binary_opening(m, iterations=2),
+                "Opening eats thin bone; label the parts and choose one.",
+            ),
+            (lambda m: ndimage.binary_erosion(m), "Erosion eats the bone; label the parts and choose one."),
         ),
         hints=(
             "ndimage.label numbers the parts.",
             "np.bincount(labels.ravel()) counts them; 0 is background.",
-            "Set sizes[0] = 0, then labels == sizes.argmax()",
+            "Set the count of label 0 to 0; argmax then names the part, and `==` makes the mask.",
         ),
         praise="the couch is gone, the skull is whole.",
     ),
@@ -142,6 +176,20 @@ EXERCISES: dict[str, Exercise] = {
                 lambda m, a: ndimage.binary_closing(m, iterations=3),
                 "Closing also fills bays of the outline; label the holes.",
             ),
+            (
+                partial(_holes, borders=()),
+                "These are the small parts of the background alone: return the bone with them, and none at the border.",
+            ),
+            (
+                lambda m, a: ndimage.binary_fill_holes(m) & ~m,
+                "These are all holes, alone, the brain's place among them: add the small ones to the bone.",
+            ),
+            (_large_holes, "This fills what is larger than max_pixels; fill what is not."),
+            (
+                lambda m, a: ndimage.binary_closing(m),
+                "Closing also fills bays of the outline, and no wide holes; label the holes.",
+            ),
+            (lambda m, a: ~m, "This is the background; holes are small parts of it."),
         ),
         hints=(
             "Holes are parts of ~mask: label them.",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import ConvexHull
 from skimage.measure import marching_cubes
 
 from .task import Answer, Exercise, largest_difference
@@ -25,6 +26,11 @@ def _parts_of_volume(vertices, faces):
     return np.einsum("ij,ij->i", a, np.cross(b, c))
 
 
+def _normals(vertices, faces):
+    a, b, c = (vertices[faces[:, i]] for i in range(3))
+    return np.cross(b - a, c - a)
+
+
 def _voxel_places():
     index = np.array([[0.0, 0.0, 0.0], [10.0, 4.0, 2.0], [3.5, 90.0, 41.5]])
     return [(index, np.array(s)) for s in ((3.0, 1.75, 1.75), (2.5, 0.45, 0.45), (1.0, 2.0, 4.0))]
@@ -39,6 +45,7 @@ EXERCISES: dict[str, Exercise] = {
             unit="of the volume",
             tolerance=1e-6,
             error=lambda a, b: largest_difference(a, b) / abs(float(b)),
+            shows=(np.asarray, "mm3"),
         ),
         mistakes=(
             (lambda v, f: _parts_of_volume(v, f).sum(), "Six times too big: a tetrahedron is a sixth of its box."),
@@ -56,11 +63,26 @@ EXERCISES: dict[str, Exercise] = {
                 "The sign is wrong: a and (b x c), in the order of the face.",
             ),
             (lambda v, f: np.prod(np.ptp(v, axis=0)), "This is the box around the mesh."),
+            (lambda v, f: _parts_of_volume(v, f) / 6, "These are the single tetrahedra: add them up."),
+            (lambda v, f: np.linalg.norm(_normals(v, f), axis=1).sum() / 2, "This is the area of the surface."),
+            (
+                lambda v, f: _parts_of_volume(v, f).sum() / 2,
+                "Three times too much: a tetrahedron is a sixth of its box.",
+            ),
+            (
+                lambda v, f: np.prod(v[f], axis=1).sum() / 6,
+                "This multiplies number by number: the volume is a . (b x c), with np.cross.",
+            ),
+            (lambda v, f: ConvexHull(v).volume, "The volume of the hull: it has no sign, and a head is not convex."),
+            (
+                lambda v, f: (v[f[:, 0]] @ np.cross(v[f[:, 1]], v[f[:, 2]]).T).sum() / 6,
+                "`@` takes every face with every other: multiply row by row, (a * ...).sum().",
+            ),
         ),
         hints=(
             "Each face and the origin make a tetrahedron.",
             "Its volume is a . (b x c) / 6, with its sign.",
-            "np.einsum('ij,ij->', a, np.cross(b, c)) / 6",
+            "np.cross takes all faces at once; multiply by a, add up everything, divide once.",
         ),
         praise="the volume without counting a voxel.",
     ),
@@ -77,8 +99,33 @@ EXERCISES: dict[str, Exercise] = {
             (lambda i, s: (i - 0.5) * s, "Half a voxel off: index 0 is the centre of a voxel, and its place is 0 mm."),
             (lambda i, s: i / s, "Divided where it should multiply: mm = voxels x mm per voxel."),
             (lambda i, s: i * s.mean(), "One mean spacing squashes the head: each axis has its own."),
+            (lambda i, s: i + s, "A spacing is mm per voxel: multiply, do not add."),
+            (
+                lambda i, s: i * s[:, None],
+                "The spacings go along the rows of the array here; one belongs to each column.",
+            ),
+            (lambda i, s: i * s[0], "The first spacing is used for all axes: each axis has its own."),
+            (lambda i, s: (i + 1) * s, "A voxel off: index 0 lies at 0 mm."),
+            (lambda i, s: (i - 1) * s, "A voxel off: index 0 lies at 0 mm."),
+            (
+                lambda i, s: np.round(i) * s,
+                "Rounded: vertices lie between voxels, and that is what makes a surface smooth.",
+            ),
+            (lambda i, s: (i * s).sum(axis=1), "The three axes are added up: a position has three numbers."),
+            (
+                lambda i, s: np.linalg.norm(i * s, axis=1),
+                "These are distances from 0, 0, 0: a position has three numbers.",
+            ),
+            (lambda i, s: i * np.prod(s), "np.prod is the volume of a voxel: each axis has its own spacing."),
+            (lambda i, s: i * s.max(), "One spacing for all axes: each has its own."),
+            (lambda i, s: i * s**2, "The spacing comes in once: mm = voxels x mm per voxel."),
+            (lambda i, s: i + 0.5 * s, "A spacing is mm per voxel: multiply, do not add."),
         ),
-        hints=("How many mm is one step along each axis?", "numpy multiplies row by row.", "index * spacing"),
+        hints=(
+            "How many mm is one step along each axis?",
+            "Three numbers in a row, three spacings: which belong together?",
+            "numpy multiplies an array (n, 3) by one of (3,) row by row.",
+        ),
         praise="the head has its true proportions.",
     ),
 }

@@ -119,6 +119,8 @@ class Answer:
         Largest error that is right, in `unit`.
     error : callable
         (answer, right answer) -> how far apart they are, in `unit`.
+    shows : tuple of (callable, str) or None
+        Answer -> what of it is shown beside the right one, and its unit; None for the answer itself, in `unit`.
     """
 
     form: str
@@ -126,6 +128,7 @@ class Answer:
     unit: str
     tolerance: float
     error: Callable[[Any, Any], float] = largest_difference
+    shows: tuple[Callable[[Any], Any], str] | None = None
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -143,7 +146,7 @@ class Exercise:
     mistakes : tuple of (callable, str)
         Typical wrong answers, and what to say to whoever gives them.
     hints : tuple of str
-        From a push to nearly all.
+        From a push to nearly all, never the whole line.
     praise : str
         What a right answer has shown.
     """

@@ -38,6 +38,16 @@ def _bridge(f, known, order, strength, *, held=True, pulled=True):
     return np.linalg.solve(left + strength * d.T @ d, np.where(known, f, 0.0) if pulled else f)
 
 
+def _weighted(f, known, order, strength):
+    d = np.diff(np.eye(len(f)), order, axis=0)
+    return np.linalg.solve(strength * np.diag(known.astype(float)) + d.T @ d, np.where(known, f, 0.0))
+
+
+def _polynomial(f, known, order, strength):
+    at = np.arange(len(f))
+    return np.polyval(np.polyfit(at[known], f[known], order), at)
+
+
 def _straight(f, known, order, strength):
     at = np.arange(len(f))
     return np.where(known, f, np.interp(at, at[known], f[known]))
@@ -60,6 +70,16 @@ def _bernstein(t, middle=2):
 def _rational(points, weights, t, *, middle=2):
     shares = _bernstein(t, middle) * weights
     return shares @ points / shares.sum(axis=1, keepdims=True)
+
+
+def _linear_ends(points, weights, t):
+    shares = np.column_stack([1 - t, 2 * t * (1 - t), t]) * weights
+    return shares @ points / shares.sum(axis=1, keepdims=True)
+
+
+def _on_circle(points, weights, t):
+    curve = _rational(points, weights, t)
+    return curve / np.linalg.norm(curve, axis=1, keepdims=True)
 
 
 EXERCISES: dict[str, Exercise] = {
@@ -85,11 +105,48 @@ EXERCISES: dict[str, Exercise] = {
                 lambda n, order: np.diff(np.eye(n), 2, axis=0),
                 "This is the second difference, whatever the order.",
             ),
+            (
+                lambda n, order: np.diff(np.eye(n), order + 1, axis=0),
+                "One order too high: of order 1 are the differences of neighbours themselves.",
+            ),
+            (lambda n, order: np.diff(np.eye(order), n, axis=0), "n and order are exchanged."),
+            (
+                lambda n, order: np.abs(_differences(n, order)),
+                "The signs are lost: neighbours are taken away from each other, 1, -2, 1.",
+            ),
+            (
+                lambda n, order: np.eye(n)[order:] - np.eye(n)[:-order],
+                "This is the difference of values `order` apart, not the difference of differences.",
+            ),
+            (
+                lambda n, order: np.diff(np.eye(n), axis=0)[: n - order],
+                "These are first differences in the right number of rows: take differences of differences.",
+            ),
+            (
+                lambda n, order: np.diff(np.arange(n), order),
+                "These are differences of 0, 1, 2, ...; those of the identity matrix make the matrix.",
+            ),
+            (
+                lambda n, order: _differences(n, order).T @ _differences(n, order),
+                "This is D^T D, the energy's matrix; D itself is wanted.",
+            ),
+            (
+                lambda n, order: np.gradient(np.eye(n), axis=0),
+                "np.gradient takes neighbours on both sides, and keeps n rows; np.diff takes the next one.",
+            ),
+            (
+                lambda n, order: np.eye(n) - np.eye(n, k=1),
+                "This has n rows, the last without a neighbour, and is the first difference whatever the order.",
+            ),
+            (
+                lambda n, order: np.linalg.matrix_power(np.diff(np.eye(n), axis=0)[:, :-1], order),
+                "A power of a square piece of D: the matrices of the differences get shorter at each order.",
+            ),
         ),
         hints=(
             "Row i of the matrix says which values the i-th difference is made of.",
             "What does np.diff make of the identity matrix?",
-            "np.diff(np.eye(n), order, axis=0)",
+            "np.diff takes the order as its second argument, and works along the last axis unless told axis=0.",
         ),
         praise="constants vanish under order 1, straight lines under 2, parabolas under 3.",
     ),
@@ -127,11 +184,48 @@ EXERCISES: dict[str, Exercise] = {
                 "The strength is already the whole factor of the energy: do not raise it to 2 order.",
             ),
             (_straight, "A straight bridge: it leaves the rim with a kink and smooths nothing."),
+            (
+                lambda f, known, order, strength: np.where(known, f, _bridge(f, known, order, strength)),
+                "The data are put back unsmoothed: g is near them, not through them.",
+            ),
+            (
+                lambda f, known, order, strength: _weighted(f, known, order, strength),
+                "The strength stands at W, and then W f lacks it: it belongs to D^T D.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(np.where(known, 0.0, f), ~known, order, strength),
+                "W has its ones in the gap: it is 1 where values are known.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, 1, strength),
+                "Always the first order: D has the order that is asked for.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order, np.sqrt(strength)),
+                "The strength is already the whole factor of the energy: no root of it.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order, order * strength),
+                "The strength is already the whole factor of the energy: do not multiply it by the order.",
+            ),
+            (
+                lambda f, known, order, strength: np.where(known, f, 0.0),
+                "These are the data alone, with 0 in the gap: solve for g.",
+            ),
+            (
+                lambda f, known, order, strength: np.where(known, f, f[known].mean()),
+                "A step to the mean: the gap is to be bridged by a smooth curve.",
+            ),
+            (_polynomial, "One polynomial through everything: a spline bends where the data ask for it."),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order, strength)[~known],
+                "This is the gap alone: return g for all values.",
+            ),
         ),
         hints=(
             "Set the derivative of sum w (g - f)^2 + strength |D g|^2 to zero: a linear system for g.",
             "W = np.diag(known.astype(float)); the system is (W + strength * D.T @ D) g = W f.",
-            "np.linalg.solve(W + strength * D.T @ D, W @ f)",
+            "np.linalg.solve(A, b) gives the g of A g = b; D is that of exercise 9.1.",
         ),
         praise="bone is smoothed and continued by one and the same solve.",
     ),
@@ -160,11 +254,47 @@ EXERCISES: dict[str, Exercise] = {
                 lambda points, weights, t: _rational(points, weights, t, middle=1),
                 "The middle function is 2 t (1 - t): the three add up to 1.",
             ),
+            (_linear_ends, "The outer functions are squares: (1 - t)^2 and t^2."),
+            (
+                lambda points, weights, t: _rational(points[::-1], weights[::-1], t),
+                "The curve runs backwards: at t = 0 it is at the first point, so (1 - t)^2 belongs to it.",
+            ),
+            (lambda points, weights, t: _rational(points, weights**2, t), "The weights come in once, not squared."),
+            (
+                lambda points, weights, t: _rational(points, 1 / weights, t),
+                "Multiply by the weights: a large one pulls the curve to its point.",
+            ),
+            (
+                lambda points, weights, t: points[0] + t[:, None] * (points[2] - points[0]),
+                "A straight line from end to end: the middle point is left out.",
+            ),
+            (
+                lambda points, weights, t: (_bernstein(t) * weights) @ points / (_bernstein(t) * weights).sum(),
+                "This divides by the sum over all t: each t has its own, sum(axis=1).",
+            ),
+            (
+                lambda points, weights, t: (
+                    (_bernstein(t) * weights) @ points / (_bernstein(t) * weights).sum(axis=0)[:2]
+                ),
+                "Summed the wrong way: each t has its own divisor, sum(axis=1).",
+            ),
+            (
+                _on_circle,
+                "Every point is put on a circle of radius 1 by force: leave that to the weighted mean.",
+            ),
+            (
+                lambda points, weights, t: _rational(points, weights, t).T,
+                "Rows and columns are exchanged: a row for every t.",
+            ),
+            (
+                lambda points, weights, t: _bernstein(t, 1) @ points,
+                "The weights are not used, and the middle function is 2 t (1 - t).",
+            ),
         ),
         hints=(
             "A rational point is a weighted mean of the control points.",
             "B = (1 - t)^2, 2 t (1 - t), t^2; numerator sum w_i B_i p_i, denominator sum w_i B_i.",
-            "share = B * weights; share @ points / share.sum(axis=1, keepdims=True)",
+            "B * weights are shares, a row for each t; divide each row by its sum, which keepdims=True keeps a column.",
         ),
         praise="with 1, 1 / sqrt 2, 1 every point lies on the circle, which no polynomial can do.",
     ),

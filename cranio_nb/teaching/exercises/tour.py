@@ -14,7 +14,8 @@ def _patches():
 
 def _pairs():
     patch = small_head().implant
-    return [(patch, np.roll(patch, 1, 2)), (patch, patch), (patch, patch & (np.arange(44) < 20)[:, None, None])]
+    lower = patch & (np.arange(44) < 20)[:, None, None]
+    return [(lower, np.roll(patch, 1, 2)), (patch, patch), (patch, lower)]
 
 
 _CUBES = "The three spacings are not equal: use each of them once."
@@ -38,11 +39,27 @@ EXERCISES: dict[str, Exercise] = {
                 (lambda m, s, three=three: m.sum() * np.prod(np.take(s, three)) / 1000, _CUBES)
                 for three in ((0, 0, 0), (1, 1, 1), (2, 2, 2), (0, 1, 1), (0, 2, 2), (0, 0, 1))
             ),
+            (lambda m, s: m.sum() * np.sum(s) / 1000, "The three spacings are multiplied, not added: np.prod."),
+            (lambda m, s: np.prod(s) / 1000, "This is the volume of one voxel: how many are there?"),
+            (lambda m, s: len(m) * np.prod(s) / 1000, "len counts the planes; mask.sum() counts the voxels."),
+            (lambda m, s: m.sum() * np.mean(s) ** 3 / 1000, _CUBES),
+            (lambda m, s: m.sum() / np.prod(s), "Divided where it should multiply: voxels times mm3 per voxel."),
+            (
+                lambda m, s: int(m.sum() * np.prod(s) / 1000),
+                "The number was cut to a whole one: a hundredth of a cm3 counts here.",
+            ),
+            *(
+                (
+                    lambda m, s, two=two: m.sum() * np.prod(np.take(s, two)) / 1000,
+                    "One of the three spacings is left out.",
+                )
+                for two in ((0, 1), (0, 2))
+            ),
         ),
         hints=(
             "Count the voxels first.",
-            "Multiply by the volume of one voxel.",
-            "mask.sum() * np.prod(spacing) / 1000",
+            "Multiply by the volume of one voxel, in mm3.",
+            "np.prod multiplies three numbers; 1 cm3 is 1000 mm3.",
         ),
         praise="voxels became cubic centimetres.",
     ),
@@ -59,8 +76,29 @@ EXERCISES: dict[str, Exercise] = {
             (lambda a, b: (a & b).sum() / (a.sum() + b.sum()), "The factor 2 is missing: two equal masks must give 1."),
             (lambda a, b: (a & b).sum() / b.sum(), "This is the part of b that is found; Dice divides by both sizes."),
             (lambda a, b: (a == b).mean(), "This counts the air as agreement; use only voxels of the masks."),
+            (lambda a, b: (a & b).sum() / a.sum(), "This is the part of a that b shares; Dice divides by both sizes."),
+            (
+                lambda a, b: (a & b).sum(),
+                "This counts what is shared; divide it by the sizes, so that it runs from 0 to 1.",
+            ),
+            (
+                lambda a, b: 2 * (a | b).sum() / (a.sum() + b.sum()),
+                "What is shared is a & b; a | b holds what either has.",
+            ),
+            (
+                lambda a, b: 1 - 2 * (a & b).sum() / (a.sum() + b.sum()),
+                "This is 1 - Dice, a distance: 0 for equal masks.",
+            ),
+            (
+                lambda a, b: 2 * (a & b).sum() / (a.size + b.size),
+                "size counts all voxels of the box; a.sum() counts those of the mask.",
+            ),
         ),
-        hints=("What is shared: a & b.", "Divide by the sum of both sizes.", "2 * (a & b).sum() / (a.sum() + b.sum())"),
+        hints=(
+            "What is shared: a & b.",
+            "Divide by the sum of both sizes.",
+            "Count with .sum(), and mind the factor that makes two equal masks give 1.",
+        ),
         praise="two equal masks give 1, two strangers 0.",
     ),
 }

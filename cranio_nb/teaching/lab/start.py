@@ -18,11 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import InputRefused
+from ..shipped import EXERCISES_HOME, TOUR, install_command
 
 SETTINGS = Path(__file__).parent / "settings"
 """Folder of JupyterLab's settings."""
-TOUR = "00_tour.ipynb"
-"""The lesson that is shown first."""
 _HERE_ONLY = ("--ServerApp.ip=127.0.0.1", "--ServerApp.allow_remote_access=False")
 _PATIENCE_S = 10  # for a lab to end its kernels
 
@@ -51,7 +50,30 @@ def lessons_folder(folder: Path | None = None) -> Path:
         if (place / TOUR).is_file():
             return place.resolve()
     where = "here" if folder is None else f"in {folder}"
-    raise InputRefused("NoLessons", f"There is no {TOUR} {where}.", "Name the folder of the lessons.")
+    advice = "Name the folder of the lessons; `cranio-nb lessons copy lessons` makes one."
+    raise InputRefused("NoLessons", f"There is no {TOUR} {where}.", advice)
+
+
+def first_shown(folder: Path) -> str:
+    """The notebook that is opened: the tour to be filled in, where there is one.
+
+    Parameters
+    ----------
+    folder : Path
+        As `lessons_folder` finds it.
+
+    Returns
+    -------
+    str
+        Path within the folder.
+
+    Examples
+    --------
+    >>> first_shown(Path("nowhere"))
+    '00_tour.ipynb'
+    """
+    students = f"{EXERCISES_HOME}/{TOUR}"
+    return students if (folder / students).is_file() else TOUR
 
 
 def lab_command(folder: Path, *, browser: bool = True, port: int | None = None, allow_root: bool = False) -> list[str]:
@@ -79,7 +101,7 @@ def lab_command(folder: Path, *, browser: bool = True, port: int | None = None, 
     """
     # the same Python, the package's settings, nothing above the lessons' folder
     command = [sys.executable, "-m", "jupyterlab", f"--LabApp.app_settings_dir={SETTINGS}"]
-    command += [f"--ServerApp.root_dir={folder}", f"--LabApp.default_url=/lab/tree/{TOUR}"]
+    command += [f"--ServerApp.root_dir={folder}", f"--LabApp.default_url=/lab/tree/{first_shown(folder)}"]
     command += [] if browser else ["--no-browser"]
     command += ["--allow-root"] if allow_root else []
     return command if port is None else [*command, f"--ServerApp.port={port}"]
@@ -88,7 +110,7 @@ def lab_command(folder: Path, *, browser: bool = True, port: int | None = None, 
 def open_lab(
     folder: Path | None = None, *, browser: bool = True, port: int | None = None, allow_root: bool = False
 ) -> int:
-    """Open JupyterLab at the tour, for this machine only, and wait until it is closed.
+    """Open JupyterLab at the students' tour, for this machine only, and wait until it is closed.
 
     Parameters
     ----------
@@ -108,7 +130,7 @@ def open_lab(
         ``NoLab`` when JupyterLab is not installed, ``NoLessons`` without lessons, ``RootLab`` for root unless allowed.
     """
     if find_spec("jupyterlab") is None:
-        raise InputRefused("NoLab", "JupyterLab is not installed.", 'Run: pip install "cranio-nb[lab,view]".')
+        raise InputRefused("NoLab", "JupyterLab is not installed.", f"Run: {install_command('lab,view')}.")
     if not allow_root and hasattr(os, "geteuid") and os.geteuid() == 0:
         message = "You are root, and whatever a notebook runs would have all rights on this machine."
         raise InputRefused("RootLab", message, "Log in as another user, or add --allow-root.")

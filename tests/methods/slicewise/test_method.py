@@ -12,7 +12,7 @@ from data_synth import phantom_case
 
 @pytest.mark.parametrize("px", [0.45, 0.9, 1.75])
 def test_the_papers_preset_is_in_mm_on_every_grid(px):
-    """The 10 points it leaves out are 4.5 mm at its pixel of 0.45 mm; its k is 0.062 of the scan's own pixels."""
+    """The 10 points it leaves out are 4.5 mm at pixels of 0.45 mm; its k is 0.062 of the scan's own pixels."""
     bone = cn.Volume(np.zeros((2, 2, 2), bool), np.diag([1.3, px, px, 1.0]))
     options = preset_options("slicewise", "paper", bone)
     assert options["skip_mm"] == 4.5 and options["reach_mm"] == pytest.approx(10 * px)

@@ -1,26 +1,8 @@
 """Typical wrong answers of lesson 00 get the hint that helps."""
 
 from lesson_answers import hint_tests
+from wrong_answers.tour import WRONG
 
 from cranio_nb.teaching.exercises.tour import EXERCISES
 
-# what students write, and words of the hint that they should get
-WRONG = {
-    "0.1": [
-        ("return mask.sum()", "counts voxels"),
-        ("return mask.sum() * spacing[0] * spacing[1] * spacing[2]", "1000 mm3"),
-        ("return np.count_nonzero(mask) * spacing[1] * spacing[2] / 1000", "area"),
-        ("return mask.size * np.prod(spacing) / 1000", "mask.sum()"),
-        ("return mask.sum() * np.prod(spacing) / 10", "10 x 10 x 10"),
-        ("return mask.sum() * spacing[0] * spacing[1] ** 2 / 1000", "not equal"),
-        ("return mask.sum() * spacing[1] ** 3 / 1000", "not equal"),
-    ],
-    "0.2": [
-        ("return np.sum(a & b) / np.sum(a | b)", "Jaccard"),
-        ("return np.logical_and(a, b).sum() / (a.sum() + b.sum())", "factor 2"),
-        ("return np.mean(a == b)", "air"),
-        ("return 2 * np.sum(a & b) / np.sum(a + b)", "a + b means"),
-    ],
-}
-
-test_every_exercise_has_wrong_answers, test_a_typical_wrong_answer_gets_its_hint = hint_tests(WRONG, EXERCISES)
+test_every_exercise_has_wrong_answers, test_a_wrong_answer_is_told_its_cause = hint_tests(WRONG, EXERCISES)

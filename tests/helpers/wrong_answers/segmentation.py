@@ -1,0 +1,136 @@
+"""Wrong answers to the exercises of lesson 02."""
+
+FRAME = ("l[0]", "l[-1]", "l[:, 0]", "l[:, -1]")
+
+
+def holes(*borders, structure="None", compare="<=", sizes="s", given="mask"):
+    """A way to fill small holes, written as a student does."""
+    return (
+        f"l, n = ndimage.label(~mask, {structure}); s = np.bincount(l.ravel()); s = {sizes}; "
+        f"out = {given}.copy(); border = {{*np.concatenate([{', '.join(borders)}])}}\n"
+        f"    for i, size in enumerate(s):\n"
+        f"        if i > 0 and size {compare} max_pixels and i not in border: out[l == i] = True\n"
+        "    return out"
+    )
+
+
+# what students write, and words of the hint that they should get
+WRONG = {
+    "2.1": [
+        ("labels, n = ndimage.label(mask); return labels == 1", "met first"),
+        ("l, n = ndimage.label(mask); return l == np.bincount(l.ravel()).argmax()", "background"),
+        ("return mask", "Nothing was dropped"),
+        ("l, n = ndimage.label(mask); return l == np.bincount(l.ravel())[1:].argmax()", "add 1"),
+        (
+            "l = [ndimage.label(s)[0] for s in mask]; "
+            "return np.array([(s == np.append(0, np.bincount(s.ravel())[1:]).argmax()) & (s > 0) for s in l])",
+            "whole mask once",
+        ),
+        (
+            "l, n = ndimage.label(mask, np.ones((3, 3, 3))); return l == np.bincount(l.ravel())[1:].argmax() + 1",
+            "not connected",
+        ),
+        ("l, n = ndimage.label(mask); return l * (l == np.bincount(l.ravel())[1:].argmax() + 1)", "numbers"),
+        ("return ndimage.label(mask)[0]", "These are the numbers of the parts"),
+        ("return ndimage.label(mask)[0] > 0", "Nothing was dropped"),
+        ("labels, n = ndimage.label(mask); return labels == n", "This is the part that is met last"),
+        (
+            ("labels, n = ndimage.label(mask); s = np.bincount(labels.ravel()); s[0] = 0; return s.argmax()"),
+            "This is the number of the largest part",
+        ),
+        (
+            ("labels, n = ndimage.label(mask); s = np.bincount(labels.ravel()); s[0] = 0; return labels == s.max()"),
+            "max gives the count",
+        ),
+        (
+            ("labels, n = ndimage.label(mask); s = np.bincount(labels.ravel()); s[0] = 0; return labels == s.argmin()"),
+            "This is the background",
+        ),
+        (
+            (
+                "labels, n = ndimage.label(mask); s = np.bincount(labels.ravel())[1:]; "
+                "return labels == np.argsort(s)[-2] + 1 if n > 1 else mask"
+            ),
+            "This is the second largest part",
+        ),
+        ("return ndimage.binary_fill_holes(mask)", "Nothing was dropped"),
+        ("labels, n = ndimage.label(mask); return np.where(labels == 1, 1, 0)", None),
+        (
+            (
+                "from skimage.morphology import remove_small_objects\n"
+                "    return ndimage.binary_opening(mask, iterations=2)"
+            ),
+            "Opening eats thin bone",
+        ),
+        (
+            ("l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); s[0] = 0; return l == s.argmax()"),
+            "This is the background",
+        ),
+        (
+            "l, n = ndimage.label(mask); s = ndimage.sum(mask, l, range(n)); return l == np.argmax(s)",
+            "Label 1 is the part that is met first",
+        ),
+        ("return ndimage.label(mask)[0] == 2", "All that is too much lies in `mask`"),
+    ],
+    "2.2": [
+        ("return ndimage.binary_fill_holes(mask)", "brain"),
+        ("return mask.copy()", "No hole"),
+        (
+            "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); return mask | ((s[l] <= max_pixels) & (l > 0))",
+            "border",
+        ),
+        (holes("l[0]", "l[-1]"), "four borders"),
+        (holes("l[:, 0]", "l[:, -1]"), "four borders"),
+        (holes("l[0]", "l[-1]", "l[:, 0]"), "four borders"),
+        (holes(*FRAME, structure="np.ones((3, 3))"), "4 neighbours"),
+        (holes(*FRAME, compare="<"), "at most"),
+        (holes(*FRAME, sizes="s[1:]"), "label before"),
+        (holes(*FRAME, given="np.zeros_like(mask)"), "holes alone"),
+        (holes(*FRAME, given="(mask * 1)"), "numbers"),
+        (
+            ("l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); s[0] = 0; return mask | ((s <= max_pixels)[l])"),
+            "What touches the border is outside",
+        ),
+        ("return ndimage.binary_closing(mask)", "Closing also fills bays of the outline"),
+        (
+            ("l, n = ndimage.label(mask); s = np.bincount(l.ravel()); return mask | ((s <= max_pixels)[l])"),
+            "No hole was filled",
+        ),
+        (
+            (
+                "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); small = s <= max_pixels; "
+                "small[0] = False; return small[l]"
+            ),
+            "These are the small parts of the background",
+        ),
+        ("return ndimage.binary_fill_holes(mask) & ~mask", "These are all holes"),
+        (
+            (
+                "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); big = s > max_pixels; "
+                "big[0] = False; return mask | big[l]"
+            ),
+            "This fills what is larger than max_pixels",
+        ),
+        ("return ~mask", "This is the background"),
+        (
+            (
+                "l, n = ndimage.label(~mask); s = np.bincount(l.ravel(), minlength=n+1); "
+                "small = s <= max_pixels; small[0] = False; small[l[0, 0]] = False; "
+                "return mask | small[l]"
+            ),
+            "What touches the border is outside",
+        ),
+        (
+            (
+                "from skimage.morphology import remove_small_holes\n"
+                "    return remove_small_holes(mask, max_size=max_pixels)"
+            ),
+            "What touches the border is outside",
+        ),
+        ("return mask | ndimage.binary_dilation(mask)", "The function does not use `max_pixels`"),
+        (
+            "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); return (s <= max_pixels)[l]",
+            "These are the small parts of the background",
+        ),
+    ],
+}
