@@ -96,6 +96,15 @@ def shown(panel):
     return panel.locator("figcaption").inner_text(), picture.get_attribute("alt"), picture.get_attribute("src")
 
 
+def dragged(page, picture, start, end):
+    """Drag a picture sideways, px from its left side; it is waited for until it no longer scrolls."""
+    picture.hover(position={"x": start, "y": 50})
+    box = picture.bounding_box()
+    page.mouse.down()
+    page.mouse.move(box["x"] + end, box["y"] + 50, steps=5)
+    page.mouse.up()
+
+
 def grey_of(page, address):
     """Level of grey at the right end of a picture of the page."""
     file = Path(unquote(urlparse(urljoin(page.url, address)).path))
@@ -117,13 +126,8 @@ def test_a_slider_moves_picture_caption_and_description_by_keyboard(page):
 
 def test_the_picture_is_dragged_by_mouse(page):
     panel = panels(page).first
-    panel.locator("img").scroll_into_view_if_needed()
-    box = panel.locator("img").bounding_box()
-    y = box["y"] + box["height"] / 2
-    page.mouse.move(box["x"] + 5, y)
-    page.mouse.down()
-    page.mouse.move(box["x"] + box["width"] - 5, y, steps=5)
-    page.mouse.up()
+    picture = panel.locator("img")
+    dragged(page, picture, 5, picture.bounding_box()["width"] - 5)
     caption, _, address = shown(panel)
     assert caption.startswith("grey 100,") and grey_of(page, address) == 100
 
@@ -157,11 +161,7 @@ def test_a_scene_turns_without_an_end(page):
     page.keyboard.press("ArrowLeft")
     assert shown(scene)[2] != start[2] and "A tetrahedron." in shown(scene)[1]
     page.keyboard.press("Home")  # -180 degrees; dragged further, it goes on from the other end
-    box = scene.locator("img").bounding_box()
-    page.mouse.move(box["x"] + 100, box["y"] + 100)
-    page.mouse.down()
-    page.mouse.move(box["x"] + 100 + 15, box["y"] + 100, steps=3)
-    page.mouse.up()
+    dragged(page, scene.locator("img"), 100, 115)
     assert "from 165 degrees" in shown(scene)[0]
 
 

@@ -20,7 +20,7 @@ from nbformat.v4 import new_markdown_cell
 
 from ...errors import InputRefused
 from ...output.staging import staged
-from .lesson_page import LessonPage, lesson_page
+from .lesson_page import lesson_page
 from .pages import lesson_head, write_pages
 from .panel_html import SCRIPTS, STYLES, write_front
 
@@ -107,7 +107,9 @@ def build_site(
         (source / _FRONT).mkdir()
         write_front(source / _FRONT)
         for path in notebooks:
-            page = _lesson(path, repository)
+            # the lesson, with the ways to a running copy below its title
+            page = lesson_page(nbformat.read(path, as_version=4), f"../pictures/{path.stem}")
+            page.notebook.cells.insert(1, new_markdown_cell(lesson_head(path.stem, repository), id="head"))
             nbformat.write(page.notebook, source / "lessons" / path.name)
             _write_pictures(part / "pictures" / path.stem, page.files)
             tell(f"{path.stem}: {len(page.files)} pictures, {sum(map(len, page.files.values())) / 1e6:.1f} MB")
@@ -141,14 +143,6 @@ def run_sphinx(source: Path, out: Path, trees: Path) -> None:
     for name in (".buildinfo", "objects.inv"):
         (out / name).unlink(missing_ok=True)
     shutil.rmtree(out / "_sources", ignore_errors=True)
-
-
-def _lesson(path: Path, repository: str) -> LessonPage:
-    """The page of a notebook, with the ways to a running copy below its title."""
-    lesson = nbformat.read(path, as_version=4)
-    page = lesson_page(lesson, f"../pictures/{path.stem}")
-    page.notebook.cells.insert(1, new_markdown_cell(lesson_head(path.stem, repository), id="head"))
-    return page
 
 
 def _write_pictures(folder: Path, files: dict[str, bytes]) -> None:
