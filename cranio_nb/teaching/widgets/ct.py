@@ -34,8 +34,8 @@ def ct_viewer(ct: Volume) -> Panel:
     last = ct.shape[0] - 1
     controls = (
         Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
-        Slider("centre", "window centre", -1000, 2000, 300, 10, unit="HU"),
-        Slider("width", "window width", 50, 4000, 1500, 10, unit="HU"),
+        Slider("centre", "window centre", -1000, 2000, 300, 10, unit="HU", ahead=0),
+        Slider("width", "window width", 50, 4000, 1500, 10, unit="HU", ahead=0),
     )
     alt = "An axial slice of the head CT in grey, with a histogram of its HU and the chosen grey window."
     window = left_window(ct.voxels > _AIR)

@@ -14,7 +14,7 @@ import traitlets
 
 from ...drawing.described import encoded_jpeg
 from ...errors import CranioError
-from .controls import Choice, Control, Slider
+from .controls import START, Choice, Control, Slider
 
 _FRONT = Path(__file__).parent / "front"
 
@@ -59,7 +59,7 @@ class Front:
         start = {name: control.value for name, control in panel.controls.items()}
         self.widget = PanelWidget(
             controls=[declared(control, slow=panel.slow) for control in panel.controls.values()],
-            presets={"as at the start": start} | panel.presets,
+            presets={START: start} | panel.presets,
             actions=list(panel.actions),
             alt=panel.alt,
             slow=panel.slow,

@@ -179,9 +179,9 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     surface = measure_outer_surface(bone, opening.head_centre, opening.head_axes)
     plane = sum(opening.planes) // 2
     controls = (
-        Slider("turn_deg", "turned about the upright axis", -10.0, 10.0, 0.0, 0.5, unit="degrees"),
-        Slider("lean_deg", "leaning to a side", -10.0, 10.0, 0.0, 0.5, unit="degrees"),
-        Slider("shift_mm", "shifted to the left", -10.0, 10.0, 0.0, 0.5, unit="mm"),
+        Slider("turn_deg", "turned about the upright axis", -10.0, 10.0, 0.0, 0.5, unit="degrees", ahead=5),
+        Slider("lean_deg", "leaning to a side", -10.0, 10.0, 0.0, 0.5, unit="degrees", ahead=5),
+        Slider("shift_mm", "shifted to the left", -10.0, 10.0, 0.0, 0.5, unit="mm", ahead=5),
     )
     alt = "A slice with the mirror image over the bone and the plane; beside it the residual over the vault."
     window = left_window(bone.voxels, _HALF)

@@ -39,9 +39,9 @@ def threshold(ct: Volume) -> Panel:
     # the histogram is of every fourth voxel: it does not change with the controls
     last = ct.shape[0] - 1
     controls = (
-        Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
+        Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last), ahead=3),
         Slider("threshold_hu", "threshold: bone from", _SHOWN, 1500, stage.BONE_HU, 5, unit="HU"),
-        Slider("max_hole_mm2", "fill holes up to", 0, 200, 60, 5, unit="mm\N{SUPERSCRIPT TWO}"),
+        Slider("max_hole_mm2", "fill holes up to", 0, 200, 60, 5, unit="mm\N{SUPERSCRIPT TWO}", ahead=2),
         Switch("parts", "colour the pieces", False, expert=True),
     )
     histogram = count_hu(ct.voxels[:, ::2, ::2])

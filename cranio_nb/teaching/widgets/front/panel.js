@@ -82,9 +82,9 @@ const ROWS = { slider: sliderRow, choice: choiceRow, switch: switchRow };
 
 function player(control, model, range, move) {
   const button = (text, label) => make("button", { type: "button", title: label, aria: { label } }, text);
-  const back = button("\u2212 1", "one step back");
+  const back = button("\u2212 1", "\u2212 1: one step back");
   const play = button("\u25B6 Play", "play");
-  const on = button("+ 1", "one step on");
+  const on = button("+ 1", "+ 1: one step on");
   const pace = make("select", { title: "pace", aria: { label: "pace" } });
   pace.append(...PACES.map(([name], i) => make("option", { value: i }, name)));
   let timer = null;
@@ -172,12 +172,14 @@ function render({ model, el }) {
 
   let url = null;
   const drawn = () => {
+    const sent = model.get("picture");
     URL.revokeObjectURL(url);
-    url = URL.createObjectURL(new Blob([model.get("picture")], { type: "image/jpeg" }));
-    picture.src = url;
+    url = typeof sent === "string" ? null : URL.createObjectURL(new Blob([sent], { type: "image/jpeg" }));
+    picture.src = url ?? sent; // a page without a kernel sends the picture's address
   };
   const said = () => {
     caption.textContent = model.get("caption");
+    picture.alt = `${model.get("alt")} ${model.get("caption")}`;
   };
   const shown = () => {
     const [values, limits, off] = ["values", "limits", "off"].map((name) => model.get(name));

@@ -70,9 +70,9 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
     run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.radius_map, **values))
     controls = (
-        Slider("wavelength_mm", "wavelength that is halved: rigidity", 5, 80, 20, unit="mm", log=True),
-        Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5),
-        Slider("damping", "\N{GREEK SMALL LETTER GAMMA}: damping per parameter area", 0.1, 100, 1, log=True),
+        Slider("wavelength_mm", "wavelength that is halved: rigidity", 5, 80, 20, unit="mm", log=True, ahead=0),
+        Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5, ahead=0),
+        Slider("damping", "\N{GREEK SMALL LETTER GAMMA}: damping per parameter area", 0.1, 100, 1, log=True, ahead=0),
         Slider("step", "step", 0, MAX_STEPS, MAX_STEPS, player=True),
     )
     alt = (
