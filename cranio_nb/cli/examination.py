@@ -19,7 +19,7 @@ _NEEDED = tuple(
     "lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
 )
 _OPTIONAL = {
-    "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
+    "lab": ("jupyterlab", "anywidget", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
     "view": ("pyvista", "vtk", "trame-pyvista", "aiohttp"),
 }
 _MIN_MEMORY_GB = 2.0

@@ -119,7 +119,7 @@ def cut_shots(comparison: Comparison) -> list[Shot]:
             reach_mm=float(np.abs(points @ along).max()) + _AROUND_MM,
         )
         # what is to be seen, for those who cannot see it
-        truth = ", the missing bone light blue" if case.truth is not None else ""
+        truth = ", the missing bone pale purple" if case.truth is not None else ""
         ends = _ends(along)
         alt = (
             f"Cut through the middle of the largest opening from {ends}, outside up: bone grey{truth}, and the "
