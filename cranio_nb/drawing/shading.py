@@ -32,11 +32,31 @@ class Picture:
         mm towards the viewer; -inf where there is nothing.
     px_mm : float
         Size of a pixel.
+    corner : ndarray, shape (2,)
+        Upper left corner along the axes of the view, to the right and down, mm.
     """
 
     rgb: NDArray[np.float32]
     depth: NDArray[np.float32]
     px_mm: float
+    corner: NDArray[np.float64]
+
+    def pixel_of(self, point: ArrayLike, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where a place of the world is seen.
+
+        Parameters
+        ----------
+        point : array_like, shape (3,)
+            World mm.
+        axes : ndarray, shape (3, 3)
+            Of the view, as `view_axes` gives them.
+
+        Returns
+        -------
+        ndarray, shape (2,)
+            Fractional pixels to the right and down.
+        """
+        return (axes[:2] @ np.asarray(point, float) - self.corner) / self.px_mm - 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,7 +167,7 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, s
         colour = _lit(colour, np.einsum("nc,ncd->nd", share, normals[corners]))
     rgb = np.ones((height, width, 3), np.float32)
     rgb[hit] = colour
-    return Picture(_outlined(rgb, depth) if shaded else rgb, depth, px_mm)
+    return Picture(_outlined(rgb, depth) if shaded else rgb, depth, px_mm, low)
 
 
 def _scan(

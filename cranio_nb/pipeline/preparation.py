@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from functools import cached_property
 from os import PathLike
 
 from ..errors import InputRefused, NoOpening
@@ -15,6 +16,7 @@ from ..vault.opening_choice import JudgedOpening, choose_openings
 from ..vault.opening_size import OpeningSize
 from ..vault.remarks import orientation_remarks, thickness_remarks
 from ..volume import Volume, same_grid
+from .input_digest import digest_volume
 from .survey import Survey, survey_scan
 
 Progress = Callable[[str, float], None]
@@ -27,6 +29,8 @@ class Prepared:
     Parameters
     ----------
     load : LoadReport
+    scan : Volume
+        HU, or a bool mask, as it was read.
     bone : Volume
         Bool mask of the skull.
     closed, left_open : tuple of JudgedOpening
@@ -40,6 +44,7 @@ class Prepared:
     """
 
     load: LoadReport
+    scan: Volume
     bone: Volume
     closed: tuple[JudgedOpening, ...]
     left_open: tuple[JudgedOpening, ...]
@@ -66,6 +71,18 @@ class Prepared:
         tuple of OpeningSize
         """
         return tuple(one.size for one in self.closed)
+
+    @cached_property
+    def digests(self) -> dict[str, str]:
+        """What tells this input from others: the digest of the scan, and of the truth where there is one.
+
+        Returns
+        -------
+        dict of str to str
+            "scan", "truth" -> SHA-256 in hex, made when first asked for.
+        """
+        volumes = {"scan": self.scan, "truth": self.truth}
+        return {name: digest_volume(volume) for name, volume in volumes.items() if volume is not None}
 
 
 def prepare(
@@ -144,7 +161,7 @@ def prepare(
     numbers = {one.number for one in closed}
     left_open = tuple(one for one in seen.found if one.number not in numbers)
     clock.lap("bone and openings")
-    return Prepared(load, seen.bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
+    return Prepared(load, scan, seen.bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
 
 
 def openings_to_close(

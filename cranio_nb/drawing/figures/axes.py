@@ -15,7 +15,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..palette import BLACK, MIDDLE_GREY, rgb_shares, side_letter
+from ..palette import BLACK, MIDDLE_GREY, WHITE, rgb_shares, side_letter
 
 DPI = 110
 
@@ -107,21 +107,35 @@ def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str 
     ax.text(x, y + 0.02 * (y1 - y0), text, color=colour, fontsize=8, va="bottom", ha="left")
 
 
-def name_sides(ax: Axes, right_down: NDArray[np.float64]) -> None:
-    """Write the letters of the patient's sides at the edges of a view: right, left and below.
+def name_sides(ax: Axes, right_down: NDArray[np.float64], *, colour: str = MIDDLE_GREY) -> None:
+    """Write the letters of the patient's sides at the edges of a view: right, left and above.
 
     Parameters
     ----------
     ax : Axes
     right_down : ndarray, shape (2 or more, 3)
         World directions (LPS) to the right and down in the picture.
+    colour : str
     """
     right, down = right_down[:2]
-    # letters at the right, the left and the lower edge, turned inwards
+    # letters at the right, the left and the upper edge, turned inwards
     for x, y, direction in ((0.99, 0.5, right), (0.01, 0.5, -right), (0.5, 0.99, -down)):
         across, up = {0.99: "right", 0.01: "left"}.get(x, "center"), "top" if y > 0.9 else "center"
-        letter, style = side_letter(direction), {"ha": across, "va": up, "color": MIDDLE_GREY}
+        letter, style = side_letter(direction), {"ha": across, "va": up, "color": colour}
         ax.text(x, y, letter, style, transform=ax.transAxes, fontsize=9, weight="bold")
+
+
+def ring_place(ax: Axes, x: float, y: float) -> None:
+    """Draw a ring around a place, dark with a light edge, so that it is seen on any ground.
+
+    Parameters
+    ----------
+    ax : Axes
+    x, y : float
+        In units of the axis.
+    """
+    for colour, width in ((WHITE, 3.6), (BLACK, 1.6)):
+        ax.plot([x], [y], ls="none", marker="o", ms=15, mfc="none", mec=colour, mew=width)
 
 
 def fill_mask(
