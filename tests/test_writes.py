@@ -37,6 +37,17 @@ REASONS = {
     ("drawing/figures/axes.py", "savefig"): "into memory",
     ("prior/file.py", "savez_compressed"): "into memory",
     ("teaching/widgets/tuning.py", "save"): "of the panel: guarded and staged",
+    ("teaching/site/frames.py", "save"): "into memory",
+    ("teaching/site/build.py", "TemporaryDirectory"): "where Sphinx finds its sources",
+    **dict.fromkeys(
+        [
+            *(("teaching/site/build.py", call) for call in ("copytree", "mkdir", "rmtree", "unlink", "write_bytes")),
+            *(("teaching/site/pages.py", call) for call in ("copytree", "mkdir", "write_text")),
+            *(("teaching/site/panel_html.py", call) for call in ("write_bytes", "write_text")),
+            *(("teaching/site/slides.py", call) for call in ("copytree", "mkdir", "write_bytes", "write_text")),
+        ],
+        "in the folder of those sources or in the staged folder",
+    ),
 }
 
 
