@@ -17,7 +17,7 @@ Array = NDArray[np.float64]
 
 TUKEY_CUT = 4.685
 """Standard deviations beyond which `tukey_weights` usually leave a residual out: 95 % efficient on normal noise."""
-_LEAST_LEVEL = 1e-8  # of the largest eigenvalue of the normal equations: 8 of 16 digits are lost
+_LEAST_LEVEL = 1e-8  # of the largest eigenvalue of the normal equations, below which they are badly conditioned
 
 
 def spread(residuals: Array) -> float:
@@ -135,8 +135,7 @@ def weighted_fit(basis: Array, values: Array, factors: Array, *, ridge: float = 
 
     Notes
     -----
-    Solved by the normal equations, which lose twice the digits of the system's condition; 8 digits are left at least.
-    Worse conditioned systems are solved by singular values.
+    Solved by the normal equations and one step of refinement; badly conditioned systems by singular values.
 
     Examples
     --------
@@ -149,7 +148,10 @@ def weighted_fit(basis: Array, values: Array, factors: Array, *, ridge: float = 
     # normal equations: (A^T A + ridge^2) c = A^T b, by eigenvalues, which tell how well they are conditioned
     levels, axes = np.linalg.eigh(system.T @ system + ridge**2 * np.eye(n))
     if levels[0] > _LEAST_LEVEL * levels[-1]:
-        return np.asarray(axes @ ((axes.T @ (system.T @ target)) / levels), float)
+        c = axes @ ((axes.T @ (system.T @ target)) / levels)
+        # once more for what is left: that gives back the digits that squaring the system took
+        left = system.T @ (target - system @ c) - ridge**2 * c
+        return np.asarray(c + axes @ ((axes.T @ left) / levels), float)
     # else by singular values, with ridge * coefficient = 0 as further equations
     if ridge:
         system, target = np.concatenate([system, ridge * np.eye(n)]), np.concatenate([target, np.zeros(n)])
