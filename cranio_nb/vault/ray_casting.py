@@ -118,9 +118,9 @@ def surface_radii(
     cells, start, step = _cells(field.voxels), field.to_voxel(centre), field.steps(rays)
     for some in np.array_split(np.arange(len(rays)), len(rays) // 250 + 1):
         at = start[:, None, None] + step[some].T[..., None] * (level[some, None] + offsets)
-        bone = _is_bone(field.voxels, cells, at)
-        ends = [_crossing(field.voxels, at, offsets, *end) for end in _nearest_run(bone, offsets)]
-        radii[:, some] = np.where(bone.any(axis=1), ends, np.nan)
+        in_bone = _is_bone(field.voxels, cells, at)
+        ends = [_crossing(field.voxels, at, offsets, *end) for end in _nearest_run(in_bone, offsets)]
+        radii[:, some] = np.where(in_bone.any(axis=1), ends, np.nan)
     outer, inner = (radii + level).reshape(2, *expected.shape)
     return outer, inner
 
