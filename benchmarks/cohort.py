@@ -1,228 +1,66 @@
-"""Many skulls, several methods -> one CSV row for each finished design; a run that was stopped goes on where it was.
+"""What the benchmarks on many skulls share: a study with what they ask on the command line, and its tables in print.
 
-Shared by the benchmarks. A row is taken as done if its case, contender, options and version are those asked for; the
-version names the package's release and a digest of the source that the method and the measures load.
+A second run does what is missing (`cranio_nb.study`): a row is done if its case, contender, options and version are
+those asked for. Each design runs in a process of its own, so that its peak memory is known.
 """
 
 from __future__ import annotations
 
 import argparse
-import csv
-import hashlib
-import inspect
 import json
 import os
-import subprocess
-import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
-from functools import cache
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from cranio_nb import __version__
-from cranio_nb.errors import CranioError
-from cranio_nb.methods.catalogue import check_options, default_options, find_method
-from cranio_nb.methods.transfer import pack_methods, unpack_methods
-from cranio_nb.pipeline.compare import MEASURES, Reference, measure
-from cranio_nb.pipeline.trial import Attempt, Contender, attempt_apart, contenders
-from cranio_nb.stages.segmentation import segment
-from cranio_nb.vault.opening_search import find_openings
-from cranio_nb.volume import Volume
-
-KEY = ("case", "contender", "options", "version")
-"""Columns that say what a row is of."""
-FAILED = ("no patch", "broken")
-"""Ends of a trial that count as failures; "refused" is a method that does not serve such a case."""
-_CODE = """
-import importlib, sys
-for name in sys.argv[1:]: importlib.import_module(name)
-print(*sorted(m.__file__ for n, m in sys.modules.items()
-              if n.split(".")[0] in ("cranio_nb", "data_synth") and getattr(m, "__file__", None)), sep="\\n")
-"""
+from cranio_nb.methods.catalogue import check_options, default_options
+from cranio_nb.pipeline.compare import MEASURES
+from cranio_nb.pipeline.trial import Contender, attempt_apart, contenders
+from cranio_nb.study.cases import Case
+from cranio_nb.study.plan import Plan, Setting
+from cranio_nb.study.run import Tally, rows_of, run_study
+from cranio_nb.study.store import Columns
+from cranio_nb.study.summaries import counts, summary, where
 
 
-@dataclass(frozen=True)
-class Case:
-    """A skull with a known missing part.
-
-    Parameters
-    ----------
-    name : str
-        Unique in its cohort.
-    load : callable
-        ``load(*arguments) -> (bone, truth)``, two masks on one grid as `Volume`; a function of a module, so that
-        another process can call it. Its ValueError is the case's own fault, and written down for each method.
-    arguments : tuple
-        Plain values.
-    facts : dict
-        Further columns, e.g. the place of the hole.
-    """
-
-    name: str
-    load: Callable[..., tuple[Volume, Volume]]
-    arguments: tuple[Any, ...]
-    facts: dict[str, Any]
+def run(cases: Sequence[Case], asked: argparse.Namespace) -> Columns:
+    """Design what is not there yet, and return all rows asked for, in the order of the cases."""
+    plan = Plan(tuple(cases), tuple(Setting(one) for one in contenders_of(asked)))
+    with ProcessPoolExecutor(asked.processes, get_context("spawn")) as pool:
+        run_study(plan, asked.out, pool, attempt=attempt_apart, progress=_print_tally)
+    return rows_of(plan, asked.out)
 
 
-def run_cohort(
-    cases: Sequence[Case],
-    asked: Sequence[Contender],
-    path: Path,
-    *,
-    processes: int = 1,
-    attempt: Attempt = attempt_apart,
-) -> list[dict[str, Any]]:
-    """Design what is not yet in the file, and return all rows asked for, in the order of the cases.
-
-    Parameters
-    ----------
-    cases : sequence of Case
-    asked : sequence of Contender
-    path : Path
-        CSV; rows are appended, each as soon as it is finished.
-    processes : int
-        Cases worked on at the same time.
-    attempt : callable
-        How a trial is run.
-    """
-    head = [*KEY, *dict.fromkeys(k for case in cases for k in case.facts), *_OUTCOME]
-    _start(path, head)
-    done = {key_of(row) for row in read_rows(path)}
-    todo = [(case, [c for c in asked if (case.name, *_identity(c)) not in done]) for case in cases]
-    todo = [(case, left) for case, left in todo if left]
-    # in the order of the cases, so that a run stopped early has covered each place and size
-    if processes == 1:
-        for case, left in todo:
-            _work(case, left, path, head, attempt)
-    else:
-        with ProcessPoolExecutor(
-            processes, get_context("spawn"), initializer=unpack_methods, initargs=(pack_methods(),)
-        ) as pool:
-            for job in [pool.submit(_work, case, left, path, head, attempt) for case, left in todo]:
-                job.result()
-    found = {key_of(row): row for row in read_rows(path)}
-    return [found[(case.name, *_identity(c))] for case in cases for c in asked]
+def _print_tally(tally: Tally) -> None:
+    left = f", {tally.seconds_left / 60:.0f} min left" if tally.done else ""
+    print(f"   {tally.before + tally.done} of {tally.total} runs, {tally.failed} failed{left}", flush=True)
 
 
-_OUTCOME = ("status", "code", "message", *MEASURES)
+def names(columns: Columns) -> list[str]:
+    """The contenders, in the order asked for."""
+    return list(dict.fromkeys(columns["contender"]))
 
 
-def _work(case: Case, left: Sequence[Contender], path: Path, head: Sequence[str], attempt: Attempt) -> None:
-    """Every contender on one case, which is read once."""
-    try:
-        bone, truth = case.load(*case.arguments)
-        bone = segment(bone)
-        openings = find_openings(bone)
-        reference = Reference.of(truth, bone, openings[0])
-    except ValueError as error:
-        code = error.code if isinstance(error, CranioError) else "NoCase"
-        for contender in left:
-            _append(path, head, case, contender, {"status": "no patch", "code": code, "message": str(error)})
-        return
-    for contender in left:
-        trial = attempt(bone, openings, contender)
-        outcome = {"status": trial.status, "code": trial.code, "message": trial.message}
-        _append(path, head, case, contender, outcome | measure(trial, bone, reference))
-
-
-def _append(path: Path, head: Sequence[str], case: Case, contender: Contender, outcome: dict[str, Any]) -> None:
-    """Add a line in one write, so that the lines of several processes do not mix."""
-    row = dict(zip(KEY, (case.name, *_identity(contender)), strict=True)) | case.facts | outcome
-    with path.open("a", newline="", encoding="utf-8") as file:
-        csv.DictWriter(file, head, restval="").writerow(row)
-    values = "  ".join(f"{k} {row[k]:.3g}" for k in ("dice", "assd", "seconds") if k in row)
-    print(f"   {case.name:28s} {contender.name:18s} {row['status']:9s} {values} {row['message']}", flush=True)
-
-
-def _identity(contender: Contender) -> tuple[str, str, str]:
-    return contender.name, json.dumps(contender.options, sort_keys=True), version_of(contender.method)
-
-
-@cache
-def version_of(method: str) -> str:
-    """The release, and a digest of the source that a method and the measures load."""
-    pieces = find_method(method).pieces
-    modules = ["cranio_nb.methods.design", "cranio_nb.pipeline.compare", "data_synth"]
-    modules += [pieces.__module__] if pieces.__module__.startswith("cranio_nb.") else []
-    loaded = subprocess.run([sys.executable, "-c", _CODE, *modules], capture_output=True, text=True, check=True)
-    digest = hashlib.sha256(inspect.getsource(pieces).encode())
-    for path in loaded.stdout.split("\n"):
-        digest.update(Path(path).read_bytes() if path else b"")
-    return f"{__version__}+{digest.hexdigest()[:8]}"
-
-
-def _start(path: Path, head: Sequence[str]) -> None:
-    """Write the head of a new file; refuse a file with another one."""
-    if path.exists():
-        with path.open(newline="", encoding="utf-8") as file:
-            if next(csv.reader(file), None) != list(head):
-                raise SystemExit(f"{path.name} holds other columns; name another file with --out.")
-        return
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with path.open("x", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerow(head)
-
-
-def read_rows(path: Path) -> list[dict[str, Any]]:
-    """Rows of a file; measures as numbers, nan where there is none."""
-    with path.open(newline="", encoding="utf-8") as file:
-        return [row | {k: float(row[k] or "nan") for k in MEASURES} for row in csv.DictReader(file)]
-
-
-def key_of(row: dict[str, Any]) -> tuple[str, ...]:
-    """What a row is of."""
-    return tuple(row[name] for name in KEY)
-
-
-def summary(rows: Iterable[dict[str, Any]]) -> dict[str, tuple[float, float, float]]:
-    """Mean, standard deviation (of the population) and worst value of each measure; nan where nothing is known.
-
-    A design that failed has a DSC and a border DSC of 0; other measures do not know it. One that was refused is left
-    out.
-    """
-    rows = [row for row in rows if row["status"] != "refused"]
-    found = {}
-    for key, what in MEASURES.items():
-        lost = 0.0 if key in ("dice", "border_dice") else np.nan
-        values = np.array([lost if row["status"] in FAILED else row[key] for row in rows], float)
-        values = values[np.isfinite(values)]
-        if not len(values):
-            found[key] = (float("nan"),) * 3
-            continue
-        off = {"high": -values, "low": values, "": np.abs(values - 1)}[what.best]
-        found[key] = float(values.mean()), float(values.std()), float(values[np.argmax(off)])
-    return found
-
-
-def counts(rows: Iterable[dict[str, Any]]) -> str:
-    """How many designs there are, and how many failed or were refused."""
-    states = [row["status"] for row in rows]
-    failed = sum(state in FAILED for state in states)
-    return f"{states.count('done')} done, {failed} failed, {states.count('refused')} refused"
-
-
-def print_summary(rows: Sequence[dict[str, Any]], keys: Sequence[str] = tuple(MEASURES)) -> None:
+def print_summary(columns: Columns, keys: Sequence[str] = tuple(MEASURES)) -> None:
     """Mean, sd and worst of each contender, then the sentences of what went wrong."""
-    for name in dict.fromkeys(row["contender"] for row in rows):
-        own = [row for row in rows if row["contender"] == name]
+    for name in names(columns):
+        own = where(columns, columns["contender"] == name)
         print(f"\n-- {name}: {counts(own)}\n   {'measure':22s} {'mean':>9s} {'sd':>9s} {'worst':>9s}  unit")
-        for key, values in summary(own).items():
+        for key, found in summary(own).items():
             if key in keys:
-                numbers = " ".join(f"{v:9.{MEASURES[key].digits}f}" for v in values)
+                numbers = " ".join(f"{v:9.{MEASURES[key].digits}f}" for v in found)
                 print(f"   {MEASURES[key].label:22s} {numbers}  {MEASURES[key].unit}")
-    print_faults(rows)
+    print_faults(columns)
 
 
-def print_faults(rows: Sequence[dict[str, Any]]) -> None:
+def print_faults(columns: Columns) -> None:
     """A line for each design that was refused or failed."""
-    for row in rows:
-        if row["status"] != "done":
-            print(f"   {row['case']}, {row['contender']}: {row['status']} ({row['code']}): {row['message']}")
+    said = (columns[name] for name in ("case", "contender", "status", "code", "message"))
+    for case, contender, status, code, message in zip(*said, strict=True):
+        if status != "done":
+            print(f"   {case}, {contender}: {status} ({code}): {message}")
 
 
 def add_arguments(parser: argparse.ArgumentParser, out: str) -> None:
@@ -232,7 +70,7 @@ def add_arguments(parser: argparse.ArgumentParser, out: str) -> None:
     parser.add_argument("--options", type=json.loads, default={}, metavar="JSON", help="{name: value} for all of them")
     parser.add_argument("--prior", metavar="FILE", help="for the methods that have an option of this name")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--out", type=Path, default=Path(out), help=f"CSV to append to (default: {out})")
+    parser.add_argument("--out", type=Path, default=Path(out), help=f"folder of the study (default: {out})")
 
 
 def contenders_of(asked: argparse.Namespace) -> list[Contender]:

@@ -1,6 +1,6 @@
 """Every method on many holes of known truth, cut into complete skulls: accuracy against size and place.
 
-    python benchmarks/defects.py [FOLDER] [--methods slicewise ...] [--processes 2] [--out defects.csv] [--plot PNG]
+    python benchmarks/defects.py [FOLDER] [--methods slicewise ...] [--processes 2] [--out defects] [--plot PNG]
 
 FOLDER holds complete skulls as masks (`*.nrrd`); by default skullfix/complete in the folder of CRANIO_NB_DATA.
 SkullFix (Kodym et al. 2021, doi 10.1016/j.dib.2021.106902) is non-commercial; nothing of it is part of this project.
@@ -24,9 +24,9 @@ from matplotlib.figure import Figure
 
 from cranio_nb.drawing.palette import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKY, VERMILLION
 from cranio_nb.pipeline.compare import MEASURES
-from cranio_nb.readers import read_ct
-from cranio_nb.volume import Volume
-from data_synth import cut_case
+from cranio_nb.study.cases import Case, cut_case
+from cranio_nb.study.store import Columns
+from cranio_nb.study.summaries import counts, summary, values, where
 
 PLACES = ("frontal", "temporal", "parietal", "occipital", "vertex")
 SIZES = (20, 40, 60, 80, 100, 120)
@@ -38,50 +38,36 @@ _SHOWN = ("dice", "border_dice", "hd95", "assd", "thickness_rmse", "cpu")
 _MARKS = list(zip("os^Dv*X", (BLUE, VERMILLION, GREEN, ORANGE, PURPLE, BLACK, SKY), strict=True))
 
 
-def cuts(skulls: Sequence[Path]) -> list[cohort.Case]:
+def cuts(skulls: Sequence[Path]) -> list[Case]:
     """The list of cuts: 5 places x 6 sizes x 2 and 8 kinds x 2, so 76."""
     wanted = [(place, size) for _ in range(_ROUNDS) for size in SIZES for place in PLACES]
-    wanted += [(kind, 0) for _ in range(_ROUNDS) for kind in KINDS]
+    wanted += [(kind, None) for _ in range(_ROUNDS) for kind in KINDS]
     found = []
     for n, (kind, size) in enumerate(wanted):
         skull = skulls[n % len(skulls)]
-        name = f"{skull.stem}-{kind}-{size or 'own'}-{n}"
-        found.append(cohort.Case(name, load, (str(skull), kind, n, size), {"place": kind, "asked_mm": size}))
+        found.append(cut_case(skull.name, kind, n, diameter_mm=size, mask=True, folder=skull.parent))
     return found
 
 
-def load(skull: str, kind: str, seed: int, size: int) -> tuple[Volume, Volume]:
-    """A skull with its hole, and the bone that was taken."""
-    whole = read_ct(skull, mask=True)[0]
-    for diameter in range(size, 0, -5) if size else [None]:
-        try:
-            case = cut_case(whole.voxels, whole.affine, kind, seed, is_mask=True, diameter=diameter)
-            return whole.with_voxels(case.bone), whole.with_voxels(case.implant)
-        except ValueError as error:
-            if "does not fit" not in str(error):
-                raise
-    raise ValueError(f"No hole of the kind {kind} fits this skull.")
-
-
-def table(rows: Sequence[dict[str, Any]], by: str, order: Sequence[Any]) -> None:
+def table(columns: Columns, by: str, order: Sequence[Any]) -> None:
     """Means of each contender by the value of a column."""
-    for name in dict.fromkeys(row["contender"] for row in rows):
+    for name in cohort.names(columns):
         heads = " ".join(f"{MEASURES[key].label:>14s}" for key in _SHOWN)
         print(f"\n-- {name}, mean by {by}\n   {'':12s} {heads}")
         for value in order:
-            own = [row for row in rows if row["contender"] == name and row[by] == str(value)]
-            means = cohort.summary(own)
-            numbers = " ".join(f"{means[key][0]:14.{MEASURES[key].digits}f}" for key in _SHOWN)
-            print(f"   {value!s:12s} {numbers}   {cohort.counts(own)}")
+            own = where(columns, (columns["contender"] == name) & (columns[by] == value))
+            means = summary(own)
+            numbers = " ".join(f"{means[key].mean:14.{MEASURES[key].digits}f}" for key in _SHOWN)
+            print(f"   {value!s:12s} {numbers}   {counts(own)}")
 
 
-def figure(rows: Sequence[dict[str, Any]]) -> Figure:
+def figure(columns: Columns) -> Figure:
     """DSC, ASSD and HD95 against the size asked for (left) and against the place (right), a mark for each contender.
 
     Small marks are single cuts, lines and large marks are means. On the left only the cuts of a given size are shown;
     a design that failed has a DSC of 0 and no distance.
     """
-    names = list(dict.fromkeys(row["contender"] for row in rows))
+    names = cohort.names(columns)
     drawing = Figure(figsize=(12.5, 10.5), dpi=110, layout="constrained")
     FigureCanvasAgg(drawing)
     axes = drawing.subplots(3, 2, width_ratios=(1, 1.5), sharey="row")
@@ -89,11 +75,10 @@ def figure(rows: Sequence[dict[str, Any]]) -> Figure:
     for (left, right), key in zip(axes, ("dice", "assd", "hd95"), strict=True):
         label = MEASURES[key].label + (f" ({MEASURES[key].unit})" if MEASURES[key].unit else "")
         for i, name in enumerate(names):
-            own = [row for row in rows if row["contender"] == name and row["status"] != "refused"]
+            own = where(columns, (columns["contender"] == name) & (columns["status"] != "refused"))
             shift = (i - (len(names) - 1) / 2) * 0.8 / len(names)
-            sized = [row for row in own if row["asked_mm"] != "0"]
-            _draw(left, sized, key, "asked_mm", [str(s) for s in SIZES], i, shift, "-")
-            _draw(right, own, key, "place", places, i, shift, "none")
+            _draw(left, where(own, np.isfinite(own["asked_mm"])), key, "asked_mm", SIZES, i, shift, "-")
+            _draw(right, own, key, "defect", places, i, shift, "none")
         left.set(xticks=range(len(SIZES)), xticklabels=SIZES, ylabel=label, xlabel="Mean diameter of the hole (mm)")
         right.set(xticks=range(len(places)), xlabel="Place and kind of the hole")
         right.set_xticklabels([p.replace("_", " ") for p in places], rotation=30, ha="right")
@@ -105,32 +90,28 @@ def figure(rows: Sequence[dict[str, Any]]) -> Figure:
     return drawing
 
 
-def _draw(
-    ax: Any, rows: list[dict[str, Any]], key: str, by: str, order: list[str], i: int, shift: float, line: str
-) -> None:
+def _draw(ax: Any, own: Columns, key: str, by: str, order: Sequence[Any], i: int, shift: float, line: str) -> None:
     """Single values and means of one contender along an axis of classes."""
     mark, colour = _MARKS[i % len(_MARKS)]
-    at = [order.index(row[by]) + shift for row in rows]
-    lost = 0.0 if key == "dice" else np.nan
-    values = [lost if row["status"] in cohort.FAILED else row[key] for row in rows]
-    ax.plot(at, values, ls="none", marker=mark, ms=3.5, color=colour, alpha=0.45, mew=0)
-    means = [cohort.summary([row for row in rows if row[by] == value])[key][0] for value in order]
+    at = [order.index(value) + shift for value in own[by]]
+    ax.plot(at, values(own, key), ls="none", marker=mark, ms=3.5, color=colour, alpha=0.45, mew=0)
+    means = [summary(where(own, own[by] == value))[key].mean for value in order]
     ax.plot(np.arange(len(order)) + shift, means, ls=line, marker=mark, ms=8, color=colour, lw=1.6)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    cohort.add_arguments(parser, "defects.csv")
-    parser.add_argument("--plot", type=Path, metavar="PNG", help="default: the CSV's name with .png")
+    cohort.add_arguments(parser, "defects")
+    parser.add_argument("--plot", type=Path, metavar="PNG", help="default: the folder's name with .png")
     asked = parser.parse_args()
     skulls = sorted(cohort.folder_of(asked, "skullfix/complete").glob("*.nrrd"))
     found = cuts(skulls)
-    rows = cohort.run_cohort(found, cohort.contenders_of(asked), asked.out, processes=asked.processes)
+    columns = cohort.run(found, asked)
     print(f"\n== {len(found)} cuts in {len(skulls)} skulls")
-    cohort.print_summary(rows, _SHOWN)
-    table(rows, "place", [*PLACES, *KINDS])
-    table([row for row in rows if row["asked_mm"] != "0"], "asked_mm", SIZES)
-    figure(rows).savefig(asked.plot or asked.out.with_suffix(".png"))
+    cohort.print_summary(columns, _SHOWN)
+    table(columns, "defect", [*PLACES, *KINDS])
+    table(columns, "asked_mm", SIZES)
+    figure(columns).savefig(asked.plot or asked.out.with_suffix(".png"))
 
 
 if __name__ == "__main__":

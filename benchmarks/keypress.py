@@ -82,8 +82,7 @@ def times(box: Locator, label: str, keys: str, presses: int) -> np.ndarray:
     back, forth = ("ArrowLeft", "ArrowRight") if keys == "Arrow" else ("PageDown", "PageUp")
     box.scroll_into_view_if_needed()
     box.evaluate(WATCH)
-    row = box.locator(".widget-inline-hbox", has=page.locator(".widget-label", has_text=label)).first
-    row.locator(".noUi-handle").first.focus()
+    box.get_by_role("slider", name=label).or_(box.locator(".noUi-handle")).first.focus()
     for i in range(presses):
         page.keyboard.press(back if i % 4 < 2 else forth)
         page.wait_for_function(f"window.keypress.took.length > {i}", timeout=20_000)
@@ -107,7 +106,8 @@ def main() -> None:
             run_all(page, address, "keys.ipynb")
             print(f"{'slider':34} {'median':>8} {'p95':>8}   ms, {asked.presses} presses")
             for name, label, keys in SLIDERS:
-                box = page.locator(".jp-OutputArea-child", has=page.locator(".widget-label", has_text=label)).first
+                named = page.get_by_role("slider", name=label).or_(page.locator(".widget-label", has_text=label))
+                box = page.locator(".jp-OutputArea-child", has=named).first
                 took = times(box, label, keys, asked.presses)
                 print(f"{name:34} {np.median(took):8.0f} {np.percentile(took, 95):8.0f}", flush=True)
         browser.close()

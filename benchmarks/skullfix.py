@@ -1,11 +1,12 @@
 """Every method on skulls with a known missing part: prints mean, sd and worst of each measure.
 
-    python benchmarks/skullfix.py [FOLDER] [--methods slicewise ...] [--processes 2] [--out skullfix.csv]
+    python benchmarks/skullfix.py [FOLDER] [--methods slicewise ...] [--processes 2] [--out skullfix]
 
 FOLDER holds one folder per case with `defective.nrrd` and `implant.nrrd`, masks on one grid; by default
 skullfix/cases in the folder of CRANIO_NB_DATA. SkullFix (Kodym et al. 2021, doi 10.1016/j.dib.2021.106902) is
-non-commercial; nothing of it is part of this project. Rows are appended to a CSV file; a second run does what is
-missing. No hint is given to a method: bone and openings are found as `cranio-nb design` finds them.
+non-commercial; nothing of it is part of this project. Rows go to the folder of a study; a second run does what is
+missing, and `cranio-nb study report` sums it up. No hint is given to a method: bone and openings are found as
+`cranio-nb design` finds them.
 """
 
 from __future__ import annotations
@@ -15,29 +16,22 @@ from pathlib import Path
 
 import cohort
 
-from cranio_nb.readers import read_ct
-from cranio_nb.volume import Volume
+from cranio_nb.study.cases import Case, scan_cases
 
 
-def load(folder: str) -> tuple[Volume, Volume]:
-    """Skull and missing part of one case."""
-    bone, truth = (read_ct(Path(folder) / f"{name}.nrrd", mask=True)[0] for name in ("defective", "implant"))
-    return bone, truth
-
-
-def cases(folder: Path) -> list[cohort.Case]:
-    found = sorted(path.parent for path in folder.glob("*/defective.nrrd"))
-    return [cohort.Case(case.name, load, (str(case),), {}) for case in found]
+def cases(folder: Path) -> list[Case]:
+    found = sorted(path.relative_to(folder).as_posix() for path in folder.glob("*/defective.nrrd"))
+    return scan_cases(found, truth="implant.nrrd", mask=True, folder=folder)
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    cohort.add_arguments(parser, "skullfix.csv")
+    cohort.add_arguments(parser, "skullfix")
     asked = parser.parse_args()
     found = cases(cohort.folder_of(asked, "skullfix/cases"))
-    rows = cohort.run_cohort(found, cohort.contenders_of(asked), asked.out, processes=asked.processes)
+    columns = cohort.run(found, asked)
     print(f"\n== SkullFix, {len(found)} cases")
-    cohort.print_summary(rows)
+    cohort.print_summary(columns)
 
 
 if __name__ == "__main__":

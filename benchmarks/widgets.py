@@ -33,12 +33,12 @@ def moves(values: list, repeats: int) -> Iterator:
 
 def measure(panel: widgets.Panel, control: str, values: list, repeats: int) -> np.ndarray:
     """Seconds from each new value of a slider to its picture."""
-    slider, took = panel.front.controls[control], []
+    shown, took = panel.front.widget, []
     for value in moves(values, repeats):
-        image, start = panel.front.image.value, time.perf_counter()
-        slider.value = value
+        image, start = shown.picture, time.perf_counter()
+        shown.values = shown.values | {control: value}
         took.append(time.perf_counter() - start)
-        assert panel.front.image.value is not image
+        assert shown.picture is not image
     return np.array(took)
 
 
@@ -105,9 +105,38 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     yield "balloon: step (the player)", measure(ball, "step", list(range(5, 60)), repeats)
     yield "patch: slice", measure(widgets.patch(bone, opening), "plane", near, repeats)
     made = cn.design(bone, openings, axial=True)
-    true = against_truth.true_prosthesis(bone.with_voxels(case.implant), bone, opening)
+    true = against_truth.true_prosthesis(bone.with_voxels(case.implant), bone, opening.head_centre)
     shown = widgets.distances(made, true)
     yield "evaluation: scale", measure(shown, "top_mm", [0.5, 1.0, 2.0], repeats)
+    # the panels below keep what they have made: first each stop anew, then again
+    steps = list(range(1, 49))
+    smooth = widgets.surface(made.patch)
+    yield "surface: steps, all new", measure(smooth, "steps", steps, min(repeats, 48))
+    yield "surface: steps, again", measure(smooth, "steps", steps, repeats)
+    mirror = widgets.symmetry_plane(bone, opening)
+    turns = np.arange(-5, 5, 0.5).tolist()
+    yield "symmetry_plane: turn, all new", measure(mirror, "turn_deg", turns, repeats)
+    yield from slow_rows(bone, opening, true, repeats)
+
+
+def slow_rows(
+    bone: cn.Volume, opening: cn.Opening, true: cn.Prosthesis, repeats: int
+) -> Iterator[tuple[str, np.ndarray]]:
+    """The panels that compute for long, and answer when a slider is let go: each setting anew, then again."""
+    guides = widgets.guiding_points(bone, opening, true)
+    for word in ("all new", "again"):
+        yield f"guiding_points: n, {word}", measure(guides, "n", list(range(3, 12)), 9)
+    plate = widgets.bent_plate(bone, opening, true)
+    lengths = np.arange(2, 12, 0.5).tolist()
+    for word in ("all new", "again"):
+        yield f"bent_plate: a, {word}", measure(plate, "second_mm", lengths, len(lengths))
+    sheet = widgets.elastic_sheet(bone, opening, true)
+    yield "elastic_sheet: rigidity, all new", measure(sheet, "wavelength_mm", [10.0, 40.0, 63.0], 3)
+    yield "elastic_sheet: step (the player)", measure(sheet, "step", [1, 2, 3, 4, 5, 6], repeats)
+    tuned = widgets.tuner(phantom_case("tiny"))
+    reaches = [6.0, 8.0, 12.0, 14.0]
+    for word in ("all new", "again"):
+        yield f"tuner: reach, {word}", measure(tuned, "reach_mm", reaches, len(reaches))
 
 
 def main() -> None:

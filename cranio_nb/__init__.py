@@ -9,8 +9,8 @@ For teaching and research. Not a medical device, not for clinical use.
 >>> bone = cn.segment(ct, threshold=400)
 >>> openings = cn.find_openings(bone)  # largest first
 >>> made = cn.design(bone, openings, method="thin-plate")
->>> cn.check_mesh(made.mesh).sound, round(cn.score(made.patch, truth, bone).dice, 1)
-(True, 0.9)
+>>> cn.check_mesh(made.mesh).sound, cn.score(made.patch, truth, bone).dice > 0.9
+(True, True)
 >>> [path.name for path in cn.save(made, "out")]  # all files or none
 ['prosthesis.stl', 'patch.nii.gz', 'design.json']
 
@@ -31,6 +31,7 @@ the files here   the nouns: `errors`, `grid`, `volume`, `mesh`, `curves`, `openi
 `drawing`        pictures and 3-D scenes
 `pipeline`       scan -> design, trial, comparison
 `output`         files and pages
+`study`          cases x methods x parameters, on one machine or many
 `teaching`       lessons, panels, exercises
 `cli`            the command line
 ===============  =====================================================================================================

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,9 +91,9 @@ class Mesh:
         lengths = self.areas[:, None]
         return np.divide(self.area_vectors, lengths, out=np.zeros((len(self.faces), 3)), where=lengths > 0)
 
-    @property
+    @cached_property
     def vertex_normals(self) -> NDArray[np.float64]:
-        """Outward unit normal of each vertex, the mean of its faces by area.
+        """Outward unit normal of each vertex, the mean of its faces by area; kept, for many views of one mesh.
 
         Returns
         -------

@@ -26,12 +26,24 @@ FLOORS = [  # a folder imports only what stands above it in this list; the nouns
     "drawing",
     "pipeline",
     "output",
+    "study",
     "teaching",
     "cli",
 ]
 LIGHT = FLOORS[: FLOORS.index("implant") + 1]  # these load no heavy library
-HEAVY = ("vtk", "vtkmodules", "pyvista", "matplotlib", "ipywidgets", "nibabel", "nrrd", "trimesh", "IPython")
-OWNERS = {"matplotlib": "drawing.figures.axes", "pyvista": "drawing.scene3d", "ipywidgets": "teaching.widgets.live"}
+HEAVY = (
+    "vtk",
+    "vtkmodules",
+    "pyvista",
+    "matplotlib",
+    "anywidget",
+    "ipywidgets",
+    "nibabel",
+    "nrrd",
+    "trimesh",
+    "IPython",
+)
+OWNERS = {"matplotlib": "drawing.figures.axes", "pyvista": "drawing.scene3d", "anywidget": "teaching.widgets.live"}
 SHARED_BY_METHODS = {"catalogue", "piece", "transfer"}
 
 

@@ -24,6 +24,8 @@ REASONS = {
     ("output/mesh_files.py", "export"): "to bytes: a file type is given and no file",
     ("pipeline/trial.py", "TemporaryDirectory"): "masks for a child process, in the system's folder of such files",
     ("pipeline/trial.py", "save"): "into that folder",
+    ("study/store.py", "mkdir"): "the folder of a study, which its command has guarded",
+    ("study/store.py", "unlink"): "files of rows, when all of them are in a new one",
     ("teaching/build.py", "TemporaryDirectory"): "where a lesson runs",
     ("teaching/grading/running.py", "TemporaryDirectory"): "where what is handed in runs",
     ("teaching/grading/grades_folder.py", "mkdir"): "in the staged folder",

@@ -118,7 +118,7 @@ def print_openings(openings: Sequence[JudgedOpening]) -> None:
             f"{one.size.length:.0f} x {one.size.width:.0f}",
             one.size.place,
             ", ".join(f"{c:.1f}" for c in one.size.centre),
-            one.verdict.reason + ("" if one.whole else " It reaches the edge of the image."),
+            f"{one.verdict.reason} {one.edge}".rstrip(),
         )
         for one in openings
     ]

@@ -19,8 +19,10 @@ _NEEDED = tuple(
     "lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
 )
 _OPTIONAL = {
-    "lab": ("jupyterlab", "ipywidgets", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
+    "lab": ("jupyterlab", "anywidget", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),
+    "study": ("distributed", "pyarrow", "bokeh"),
     "view": ("pyvista", "vtk", "trame-pyvista", "aiohttp"),
+    "site": ("sphinx", "myst-nb", "numpydoc", "furo", "sphinx-revealjs"),
 }
 _MIN_MEMORY_GB = 2.0
 _PLOT = "from matplotlib.backends.backend_agg import FigureCanvasAgg as C; from matplotlib.figure import Figure as F; "

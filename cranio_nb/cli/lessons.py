@@ -6,6 +6,7 @@ from pathlib import Path
 
 import click
 
+from ..errors import InputRefused
 from .options import PATH, check_writes, debug
 
 shipped = click.option(
@@ -22,6 +23,7 @@ def lessons() -> None:
       cranio-nb lessons copy lessons
       cranio-nb lessons build
       cranio-nb lessons html pages
+      cranio-nb lessons site pages
       cranio-nb lessons grade handed_in/*/04_deformable_model.ipynb
       cranio-nb lessons export course --for nbgrader
     """
@@ -94,6 +96,54 @@ def html(out: Path, folder: Path | None) -> None:
     check_writes(out, [f"{path.stem}.html" for path in notebooks], {path.name: path for path in notebooks})
     for path in write_pages(folder, out):
         click.echo(path)
+
+
+@lessons.command()
+@click.argument("out", type=PATH)
+@click.option("--folder", type=PATH, default=Path(), show_default=True, help="The project's folder, with its README.")
+@click.option("--only", default="", metavar="NN", help="Only lessons whose name starts so, e.g. 04.")
+@click.option("--repository", default="", metavar="OWNER/NAME", help="On GitHub: adds links to Binder and Colab.")
+@debug
+def site(out: Path, folder: Path, only: str, repository: str) -> None:
+    """Build the lessons, the docs and the API reference as a web site that opens from disk.
+
+    The lessons are shown as they ran; only what draws their panels is run again. Needs the extra "site".
+
+    \b
+    Examples:
+      cranio-nb lessons site pages
+      cranio-nb lessons site pages --only 04
+    """
+    from ..teaching.site.build import NAMES, build_site
+
+    reads = {name: folder / name for name in ("README.md", "docs", "notebooks")}
+    check_writes(out, NAMES, reads)
+    click.echo(build_site(folder, out, only, repository, click.echo))
+
+
+@lessons.command()
+@click.argument("number", metavar="NN")
+@click.argument("out", type=PATH)
+@click.option("--folder", type=PATH, default=Path("notebooks"), show_default=True, help="Holds NN_topic.ipynb.")
+@debug
+def slides(number: str, out: Path, folder: Path) -> None:
+    """Write a lesson as slides for a lecture: figures large, panels alive, answers left out.
+
+    They open from disk in any browser. Needs the extra "site".
+
+    \b
+    Example:
+      cranio-nb lessons slides 04 talk
+    """
+    from ..teaching.site.slides import write_slides
+
+    found = sorted(folder.glob(f"{number}*.ipynb"))
+    if len(found) != 1:
+        names = ", ".join(path.name for path in found) or "none"
+        raise InputRefused("NotFound", f"One lesson was wanted that begins with {number!r}; found: {names}.")
+    (path,) = found
+    check_writes(out, (f"{path.stem}.html", f"{path.stem}_pictures", "reveal"), {path.name: path})
+    click.echo(write_slides(path, out))
 
 
 @lessons.command()

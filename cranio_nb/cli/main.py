@@ -23,6 +23,7 @@ from .options import debug
 from .phantom import phantom
 from .prior import prior
 from .score import score
+from .study import study
 
 
 class ErrorGroup(click.Group):
@@ -61,7 +62,7 @@ def _sentence(error: Exception) -> str:
 
 @click.group(
     cls=ErrorGroup,
-    commands=[demo, phantom, design, inspect, score, doctor, compare, methods, lab, lessons, prior],
+    commands=[demo, phantom, design, inspect, score, doctor, compare, methods, lab, lessons, prior, study],
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 @click.version_option(package_name="cranio-nb", prog_name="cranio-nb")

@@ -299,7 +299,7 @@ def check_writes(out: Path, names: Collection[str], reads: Mapping[str, Path | N
 
 def _named(reads: Mapping[str, Path | None]) -> dict[str, Path | None]:
     """The paths by what they are called on the command line."""
-    called = {"scan": "INPUT", "from_": "--from", "patch": "PATCH"}
+    called = {"scan": "INPUT", "from_": "--from", "patch": "PATCH", "plan": "PLAN"}
     return {
         called.get(name, f"--{name}" if name.isidentifier() and name.islower() else name): path
         for name, path in reads.items()

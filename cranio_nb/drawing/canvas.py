@@ -15,10 +15,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image, ImageDraw, ImageFont
 
-from .palette import BLACK, WHITE
+from .palette import BLACK, WHITE, side_letter
 from .pixels import RGB, Window
 
 _SCALE = 2  # drawn larger by this
+_LETTER = 12  # px from an edge to the middle of the letter of a side
 
 
 class Canvas:
@@ -221,6 +222,25 @@ class Canvas:
         self.line([(x, y), (x + length, y)], WHITE, width=7)
         self.line([(x + 1, y), (x + length - 1, y)], BLACK, width=3)
         self.text(x, y - 8, text, halo=True)
+
+    def sides(
+        self, box: tuple[float, float, float, float], right: ArrayLike = (1, 0, 0), down: ArrayLike = (0, 1, 0)
+    ) -> None:
+        """Write the letters of the patient's sides at the edges of a picture of a head.
+
+        Parameters
+        ----------
+        box : tuple of float
+            x, y, width and height of the picture, px.
+        right, down : array_like, shape (3,)
+            Where they lead in the head, LPS; by default those of an axial slice.
+        """
+        x, y, width, height = box
+        for way, across, along in ((np.asarray(right, float), 0.5, 0.0), (np.asarray(down, float), 0.0, 0.5)):
+            for sign in (-1, 1):
+                left = x + width / 2 + 2 * sign * across * (width / 2 - _LETTER)
+                top = y + height / 2 + 2 * sign * along * (height / 2 - _LETTER)
+                self.text(left, top, side_letter(sign * way), size=14, anchor="mm", halo=True)
 
     def legend(self, x: float, y: float, entries: Sequence[tuple[str, str, str]]) -> None:
         """Draw a legend, one entry below the other, on white.

@@ -13,6 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 from .canvas import Canvas, round_length
 from .palette import BLACK, GREY, PALE
 
+_LARGEST = 1e4  # of ticks that are written as numbers
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _LEFT, _BELOW, _ABOVE, _RIGHT = 58, 40, 26, 12  # px around the plotted area for ticks, names and title
 
 
@@ -87,10 +89,11 @@ class Chart:
         """
         x, y, width, height = self.area
         # a pale line at each tick of y, a short mark at each of x
-        for value in self._ticks_y():
+        values = self._ticks_y()
+        for value, name in zip(values, _names(values), strict=True):
             (_, at), *_ = self.px([[self.x[0], value]])
             canvas.line([(x, at), (x + width, at)], PALE, width=1)
-            canvas.text(x - 6, at, f"{value:g}", size=11, colour=GREY, anchor="rm")
+            canvas.text(x - 6, at, name, size=11, colour=GREY, anchor="rm")
         for value in _ticks(*self.x):
             (at, _), *_ = self.px([[value, self.y[0]]])
             canvas.line([(at, y + height), (at, y + height + 4)], BLACK, width=1)
@@ -165,7 +168,15 @@ class Chart:
         return 10.0 ** np.arange(low, high + 1, max(1, (high - low) // 4))
 
 
+def _names(values: NDArray[np.float64]) -> list[str]:
+    """How ticks are written: all of them as numbers, or all as powers of ten where some would be long."""
+    if not len(values) or (np.abs(values).max() <= _LARGEST and np.abs(values[values != 0]).min() >= 1 / _LARGEST):
+        return [f"{value:g}" for value in values]
+    powers = (str(round(np.log10(value))) for value in values)
+    return ["10" + power.translate(_RAISED) for power in powers]
+
+
 def _ticks(low: float, high: float) -> NDArray[np.float64]:
     """About four round values between two limits."""
     step = round_length((high - low) / 3)
-    return np.round(np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step, 10)
+    return np.round(np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step, 10) + 0.0  # no "-0"

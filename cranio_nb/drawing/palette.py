@@ -16,7 +16,8 @@ BONE = "#D8D2C4"
 """Bone in a slice."""
 SKULL = "#EDE7D8"
 """Bone of a shaded surface."""
-PATCH = TRUTH = SKY
+PATCH = SKY
+TRUTH = PURPLE
 PROSTHESIS = OUTER = BLUE
 INNER = VERMILLION
 TANGENT = GREEN
@@ -67,6 +68,26 @@ def rgb_shares(colour: str) -> NDArray[np.float64]:
     [1.0, 0.0, 0.2]
     """
     return np.array(rgb_of(colour)) / 255
+
+
+def faded(colour: str) -> str:
+    """A colour half-way to white, for what lies behind.
+
+    Parameters
+    ----------
+    colour : str
+        "#RRGGBB".
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> faded("#0072B2")
+    '#7FB8D8'
+    """
+    return "#{:02X}{:02X}{:02X}".format(*((part + 255) // 2 for part in rgb_of(colour)))
 
 
 def side_letter(direction: ArrayLike) -> str:

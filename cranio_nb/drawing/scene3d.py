@@ -27,10 +27,11 @@ from .coarse_skull import skull_surface
 from .described import Bundle, bundle, encoded_png
 from .front_end import is_local, mode
 from .local_server import NAME, running_server
-from .palette import BLUE, GREEN, ORANGE, PURPLE, SKULL, SKY, rgb_shares
+from .palette import BLACK, BLUE, GREEN, ORANGE, PURPLE, SKULL, SKY, rgb_shares, side_letter
 from .pixels import RGB
+from .scene_legend import bar_length, bounds, legend
 from .scene_picture import HEIGHT, WIDTH, Part, draw_parts, top_of_scale
-from .shading import up_in_view
+from .shading import up_in_view, view_axes
 from .thinning import thin_mesh
 
 MAX_FACES = 150_000
@@ -38,6 +39,8 @@ MAX_FACES = 150_000
 COLOURS = (SKULL, BLUE, ORANGE, GREEN, SKY, PURPLE)
 """Of the meshes of a scene in their order; a mesh alone takes the second."""
 _PAGE_FACES = 60_000
+_SOCKET = "ws://use_host/ws"  # told, so that the page need not ask a launcher that is not there
+_SIDEWAYS = 0.8  # cosine with the line of sight from which on a letter would hide the scene or lie behind it
 _NO_PYVISTA = 'Install "cranio-nb[view]" to turn the scene; this is a picture of it.'
 
 
@@ -212,8 +215,8 @@ class Scene:
         """
         made = plotter(self)  # before the server, whose parts must not search for more
         server = running_server()
-        asked = {"name": NAME, "handler": partial(_frame, server.options["key"])}
-        asked |= {"jupyter_extension_enabled": False, "server_proxy_enabled": False}
+        asked = {"name": NAME, "handler": partial(_frame, self, server.options["key"])}
+        asked |= {"jupyter_extension_enabled": False, "server_proxy_enabled": False, "add_menu": False}
         return made.show(jupyter_backend="client", jupyter_kwargs=asked, return_viewer=True)
 
     @cached_property
@@ -226,7 +229,8 @@ class Scene:
         """
         inner = html.escape(plotter(self, _PAGE_FACES).trame.export_html(None).getvalue(), quote=True)
         title = html.escape(self.alt, quote=True)
-        return f'<iframe title="{title}" srcdoc="{inner}" style="width:100%;height:{HEIGHT}px;border:0"></iframe>'
+        frame = f'<iframe title="{title}" srcdoc="{inner}" style="width:100%;height:{HEIGHT}px;border:0"></iframe>'
+        return legend(self.parts, self.unit) + frame
 
 
 def plotter(scene: Scene, max_faces: int = MAX_FACES) -> Any:
@@ -253,21 +257,61 @@ def plotter(scene: Scene, max_faces: int = MAX_FACES) -> Any:
     for part in scene.parts:
         values = np.zeros(len(part.mesh.vertices)) if part.values is None else part.values
         mesh, carried = thin_mesh(part.mesh, np.column_stack([part.mesh.vertex_normals, values]), budget)
-        surface = pv.PolyData.from_regular_faces(mesh.vertices, mesh.faces.astype(int))
+        faces = _turned_outwards(mesh, carried[:, :3]).astype(int)
+        surface = pv.PolyData.from_regular_faces(mesh.vertices, faces)
         # the normals of the full mesh: those of the thinned one turn black where two of its faces fold together
         surface.point_data.active_normals = carried[:, :3]
         if part.values is not None:
             surface["values"] = carried[:, 3]
         made.add_mesh(surface, name=part.label or None, smooth_shading=True, **_colouring(part, scene))
+    for mark in _marks(scene):
+        made.add_mesh(mark, color=tuple(rgb_shares(BLACK).tolist()), lighting=False)
     made.camera_position = _camera(scene)
     return made
 
 
-def _frame(key: str, viewer: Any, address: str, **more: Any) -> Any:
-    """The frame of a live scene, whose address holds the key of its server."""
+def _turned_outwards(mesh: Mesh, normals: NDArray) -> NDArray[np.intp]:
+    """The faces, those turned round that were folded by thinning and would be drawn black, as if from inside."""
+    folded = np.einsum("fd,fd->f", mesh.area_vectors, normals[mesh.faces].sum(axis=1)) < 0
+    return np.where(folded[:, None], mesh.faces[:, ::-1], mesh.faces)
+
+
+def _marks(scene: Scene) -> list[Any]:
+    """A bar below the scene and the letters of the patient's sides around it, as meshes of pyvista."""
+    import pyvista as pv  # noqa: TID251  (this is the module that may)
+
+    low, high = bounds([part.mesh for part in scene.parts])
+    middle, half = (low + high) / 2, (high - low) / 2
+    right, down, towards = view_axes(scene.towards)
+    size = 0.07 * float(half.max() * 2)
+    # the bar: below all corners of the box, across the view
+    below = middle + (np.abs(down) @ half + 1.2 * size) * down
+    reach = bar_length([part.mesh for part in scene.parts]) / 2 * right
+    marks = [pv.Line(below - reach, below + reach).tube(radius=size / 15)]
+    # letters upright as they are first seen; those before and behind the scene are left out
+    for way in (*np.eye(3), *-np.eye(3)):
+        if abs(way @ towards) < _SIDEWAYS:
+            letter = pv.Text3D(side_letter(way), height=size, depth=size / 10, center=(0, 0, 0))
+            away = 1.0 if way @ towards > -0.1 else 2.2  # out of the shadow of the scene
+            at = middle + (np.abs(way) @ half + away * size) * way
+            marks.append(_placed(letter, np.array([right, -down, towards]), at))
+    return marks
+
+
+def _placed(letter: Any, axes: NDArray, at: NDArray) -> Any:
+    """A letter with its own axes along others, moved to a place."""
+    letter.points = np.asarray(letter.points) @ axes + at
+    return letter
+
+
+def _frame(scene: Scene, key: str, viewer: Any, address: str, *, iframe_attrs: Any = None, **more: Any) -> Any:
+    """The legend and the frame of a live scene, whose address holds the key of its server and its socket."""
     from trame_pyvista.jupyter import Widget
 
-    return Widget(viewer, f"{address}&secret={key}", **more)
+    titled = {**(iframe_attrs or {}), "title": html.escape(scene.alt, quote=True)}
+    widget = Widget(viewer, f"{address}&sessionURL={_SOCKET}&secret={key}", iframe_attrs=titled, **more)
+    widget.value = legend(scene.parts, scene.unit) + widget.value
+    return widget
 
 
 def _colouring(part: Part, scene: Scene) -> dict[str, Any]:
@@ -280,22 +324,16 @@ def _colouring(part: Part, scene: Scene) -> dict[str, Any]:
 
 def _camera(scene: Scene) -> list[tuple[float, ...]]:
     """Position, focal point and up for a view of the whole scene."""
-    low, high = _bounds([part.mesh for part in scene.parts])
+    low, high = bounds([part.mesh for part in scene.parts])
     middle = (low + high) / 2
     place = middle + 1.6 * np.linalg.norm(high - low) * scene.towards
     return [tuple(place.tolist()), tuple(middle.tolist()), tuple(up_in_view(scene.towards).tolist())]
 
 
-def _bounds(meshes: Sequence[Mesh]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Lowest and highest x, y, z of the vertices that faces use, mm."""
-    points = np.concatenate([mesh.vertices[np.unique(mesh.faces)] for mesh in meshes])
-    return points.min(axis=0), points.max(axis=0)
-
-
 def _towards(meshes: Sequence[Mesh], asked: ArrayLike | None) -> NDArray[np.float64]:
     """Unit vector to the viewer, by default so that the last mesh is seen in front of the first, a little turned."""
     if asked is None:
-        (low, high), (low2, high2) = _bounds(meshes[:1]), _bounds(meshes[-1:])
+        (low, high), (low2, high2) = bounds(meshes[:1]), bounds(meshes[-1:])
         ahead = (low2 + high2 - low - high) / 2
         lone = len(meshes) == 1 or np.linalg.norm(ahead) < 1e-6
         asked = (0.6, -0.7, 0.4) if lone else ahead / np.linalg.norm(ahead) + (0.0, -0.25, 0.2)

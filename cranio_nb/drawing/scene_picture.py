@@ -91,6 +91,7 @@ def draw_parts(parts: Sequence[Part], towards: NDArray[np.float64], *, unit: str
     width = max(WIDTH, wide + 20)
     canvas = Canvas(width, tall + 40 + (_BAR_HEIGHT if top else 0))
     canvas.place(seen, (width - wide) / 2, 10)
+    canvas.sides((0, 0, width, tall + 20), *view_axes(towards)[:2])
     # names, a length, and what the colours mean
     named = [(part.colour, "area", part.label) for part in parts if part.label and part.values is None]
     if named:

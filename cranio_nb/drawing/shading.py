@@ -32,11 +32,31 @@ class Picture:
         mm towards the viewer; -inf where there is nothing.
     px_mm : float
         Size of a pixel.
+    corner : ndarray, shape (2,)
+        Upper left corner along the axes of the view, to the right and down, mm.
     """
 
     rgb: NDArray[np.float32]
     depth: NDArray[np.float32]
     px_mm: float
+    corner: NDArray[np.float64]
+
+    def pixel_of(self, point: ArrayLike, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where a place of the world is seen.
+
+        Parameters
+        ----------
+        point : array_like, shape (3,)
+            World mm.
+        axes : ndarray, shape (3, 3)
+            Of the view, as `view_axes` gives them.
+
+        Returns
+        -------
+        ndarray, shape (2,)
+            Fractional pixels to the right and down.
+        """
+        return (axes[:2] @ np.asarray(point, float) - self.corner) / self.px_mm - 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,14 +160,14 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, s
     face, weight, depth = _scan(at, faces, int(height), int(width))
     # colours and normals between the corners of the face that is seen
     hit = face >= 0
-    corners, share = faces[face[hit]], weight[hit][..., None]
-    colour = (share * colours[corners]).sum(axis=1)
+    corners, share = faces[face[hit]], weight[hit]
+    colour = np.einsum("nc,ncd->nd", share, colours[corners])
     if shaded:
         normals = np.concatenate([s.mesh.vertex_normals for s in solids]) @ axes.T
-        colour = _lit(colour, (share * normals[corners]).sum(axis=1))
+        colour = _lit(colour, np.einsum("nc,ncd->nd", share, normals[corners]))
     rgb = np.ones((height, width, 3), np.float32)
     rgb[hit] = colour
-    return Picture(_outlined(rgb, depth) if shaded else rgb, depth, px_mm)
+    return Picture(_outlined(rgb, depth) if shaded else rgb, depth, px_mm, low)
 
 
 def _scan(
@@ -170,7 +190,9 @@ def _scan(
     for n in np.unique(n_steps[front]):
         some = np.flatnonzero(n_steps == n)
         share = _shares(int(n))
-        sample = np.einsum("kc,fcd->fkd", share, corners[some]).reshape(-1, 3)
+        # sums of products written out: faster than einsum here, and the same on every machine, as those of BLAS are not
+        a, b, c = corners[some].transpose(1, 0, 2)[:, :, None]
+        sample = (share[:, 0, None] * a + share[:, 1, None] * b + share[:, 2, None] * c).reshape(-1, 3)
         index = sample[:, 1].astype(np.int32) * width + sample[:, 0].astype(np.int32)
         np.maximum.at(depth, index, sample[:, 2])
         won = np.flatnonzero(sample[:, 2] == depth[index])

@@ -91,13 +91,33 @@ def count_not_converged(slices: Sequence[dict[str, Any]]) -> int:
     return sum(not all(s["converged"]) for s in slices if s["status"] == "balloon")
 
 
-def pick_slices(statuses: Sequence[str], n: int) -> list[int]:
+def count_crossed(slices: Sequence[dict[str, Any]]) -> int:
+    """Number of slices whose outer and inner curve cross.
+
+    Parameters
+    ----------
+    slices : sequence of dict
+        As for `balloon_ranges`.
+
+    Returns
+    -------
+    int
+
+    Examples
+    --------
+    >>> count_crossed([{"status": "carried", "crossed": True}, {"status": "skipped"}])
+    1
+    """
+    return sum(s.get("crossed", False) for s in slices)
+
+
+def pick_slices(kinds: Sequence[str], n: int) -> list[int]:
     """Which slices to show: evenly spread, with one of each kind other than "balloon" among them.
 
     Parameters
     ----------
-    statuses : sequence of str
-        Of all slices, in order.
+    kinds : sequence of str
+        Of all slices, in order: their status, or "crossed".
     n : int
         Number wanted.
 
@@ -113,11 +133,11 @@ def pick_slices(statuses: Sequence[str], n: int) -> list[int]:
     """
     # the middle one of each other kind, then balloons at even steps
     special = []
-    for status in STATUSES[1:]:
-        at = [i for i, s in enumerate(statuses) if s == status]
+    for kind in ("crossed", *STATUSES[1:]):
+        at = [i for i, one in enumerate(kinds) if one == kind]
         special += at[len(at) // 2 : len(at) // 2 + 1]
     special = special[: max(n - 1, 0)]
-    plain = [i for i, s in enumerate(statuses) if s == "balloon"]
+    plain = [i for i, one in enumerate(kinds) if one == "balloon"]
     n_plain = min(n - len(special), len(plain))
     even = (np.arange(n_plain) + 0.5) / max(n_plain, 1) * len(plain)
     return sorted(special + [plain[int(i)] for i in even])

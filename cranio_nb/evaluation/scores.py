@@ -1,6 +1,6 @@
 """A patch and the truth as masks -> how far apart they are: overlap of voxels, distance of surface voxels.
 
-Frame: masks are `Volume`s on one grid; distances in mm. An empty mask is a possible answer of a method, so it is
+Frame: masks are volumes on one grid; distances in mm. An empty mask is a possible answer of a method, so it is
 measured, not refused: two empty masks agree (Dice 1, distances 0, ratio 1); an empty mask against a filled one does
 not (Dice 0, distances inf).
 """
@@ -92,7 +92,7 @@ def score(patch: Volume, truth: Volume, skull: Volume) -> Score:
 
 
 def dice(patch: Volume, truth: Volume) -> float:
-    """Dice similarity, 2 |A and B| / (|A| + |B|).
+    """Dice similarity, ``2 |A and B| / (|A| + |B|)``.
 
     Parameters
     ----------

@@ -127,13 +127,14 @@ def add_method(name: str, pieces: Pieces | None = None, *, presets: Mapping[str,
 
 
 def keep_method(method: Method) -> None:
-    """Take a method as another process had it into the catalogue; one of that name that is there stays.
+    """Take a method as another process had it into the catalogue, in place of what was added by that name before.
 
     Parameters
     ----------
     method : Method
+        A built-in method of its name, or one of another package, stays.
     """
-    if method.name not in method_names():
+    if method.name in _added or method.name not in method_names():
         _added[method.name] = method
 
 

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import os
 import pickle
 import sys
+import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 
 from .catalogue import Method, added_methods, keep_method
+
+_MADE = uuid.uuid4().hex  # a forked process shares it, but not the number of the process
 
 
 def pack_methods() -> bytes:
@@ -24,19 +28,26 @@ def pack_methods() -> bytes:
     import cloudpickle  # loaded only for own methods
 
     with _by_value(methods):
-        return bytes(cloudpickle.dumps(methods))
+        return bytes(cloudpickle.dumps((_process(), methods)))
 
 
 def unpack_methods(packed: bytes) -> None:
-    """Add packed methods to the catalogue of this process; those that are there already stay.
+    """Add packed methods to the catalogue of this process; what was packed here is left as it is.
 
     Parameters
     ----------
     packed : bytes
-        From `pack_methods`.
+        From `pack_methods`. A worker that lives long gets the newest form of each method.
     """
-    for method in pickle.loads(packed) if packed else ():
-        keep_method(method)
+    sender, methods = pickle.loads(packed) if packed else (_process(), ())
+    if sender != _process():
+        for method in methods:
+            keep_method(method)
+
+
+def _process() -> tuple[str, int]:
+    """What tells a process from those of all machines."""
+    return _MADE, os.getpid()
 
 
 @contextmanager

@@ -120,7 +120,7 @@ def cut_shots(comparison: Comparison) -> list[Shot]:
             reach_mm=float(np.abs(points @ along).max()) + _AROUND_MM,
         )
         # what is to be seen, for those who cannot see it
-        truth = ", the missing bone light blue" if case.truth is not None else ""
+        truth = ", the missing bone pale purple" if case.truth is not None else ""
         ends = _ends(along)
         alt = (
             f"Cut through the middle of the largest opening from {ends}, outside up: bone grey{truth}, and the "
@@ -165,7 +165,7 @@ def _distance_shot(
     figure = figures.distance_figure(made.mesh, surface, d, towards, top_mm=top_mm, px_mm=_MAP_PX_MM)
     alt = (
         f"Distance map of the {side} side of {name}: dark blue 0 mm, yellow {top_mm:g} mm or more from "
-        f"{_reference_words(comparison)}; mean {d.mean():.2f} mm, largest {d.max():.2f} mm; scale bar 20 mm."
+        f"{_reference_words(comparison)}; mean {d.mean():.2f} mm, largest {d.max():.2f} mm, ringed; scale bar 20 mm."
     )
     return shot(figure, alt=alt, caption=f"{name}: mean {d.mean():.2f} mm")
 

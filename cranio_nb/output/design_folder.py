@@ -17,6 +17,7 @@ from ..geometry.mesh_check import MeshReport, check_mesh
 from ..grid import AxisOrder
 from ..implant.mass import weigh_implant
 from ..methods.catalogue import default_options, method_names
+from ..pipeline.input_digest import case_label
 from ..pipeline.run import RunResult
 from ..prosthesis import Prosthesis
 from ..readers import LoadReport
@@ -151,6 +152,9 @@ def design_record(result: RunResult) -> dict[str, Any]:
         JSON-able after `files.jsonable`.
     """
     return made_record(result.prosthesis) | {
+        "case": case_label(result.case.digests["scan"]),
+        "finished": result.finished.isoformat(timespec="seconds"),
+        "input_sha256": result.case.digests,
         "load": load_record(result.case.load),
         "bone_threshold_hu": result.case.threshold,
         "openings": [one.record() for one in result.case.closed],

@@ -8,13 +8,22 @@ from __future__ import annotations
 from importlib.metadata import version
 from typing import Any
 
-from ..drawing import palette
-from ..evaluation.paper_tables import PAPER_BALLOONS, PAPER_DISTANCES, STATUSES, balloon_ranges, count_statuses
+from ..drawing import figures, palette
+from ..evaluation.paper_tables import (
+    PAPER_BALLOONS,
+    PAPER_DISTANCES,
+    STATUSES,
+    balloon_ranges,
+    count_crossed,
+    count_statuses,
+)
 from ..implant.mass import weigh_implant
+from ..pipeline.input_digest import case_label
 from ..pipeline.run import RunResult, parameters_used
 from ..prosthesis import DistanceStats
 from ..vault.verdict import rule_rows
-from .design_pictures import distance_shots, slice_shots, view_shots
+from .design_pictures import cut_shots, distance_shots, slice_shots, view_shots
+from .error_pictures import error_shots, largest_errors
 from .pages import page_template
 
 _NAMES = {"theta0": "θ₀ (degrees)", "theta1": "θ₁ (degrees)", "n_iter": "Steps of the balloon"}
@@ -34,22 +43,28 @@ def report_page(result: RunResult) -> str:
     """
     # only slice methods record slices; without them their tables are left out
     made = result.prosthesis
-    slices = made.record.get("slices", [])
+    slices, errors = made.record.get("slices", []), largest_errors(result)
     return page_template("design_page.html").render(
         version=version("cranio-nb"),
+        label=case_label(result.case.digests["scan"]),
         result=result,
         made=made,
         parameters=parameters_used(result),
         slices=slices,
         counts=count_statuses(slices),
+        n_crossed=count_crossed(slices),
         statuses=STATUSES,
         implant=weigh_implant(made.mesh),
         rule=rule_rows(),
         views=view_shots(result),
+        cuts=cut_shots(result),
         pictures=slice_shots(result),
         balloons=balloon_tables(result),
         distances=distance_shots(result),
         table3=distance_table(result),
+        errors=errors,
+        error_pictures=error_shots(result, errors),
+        design_line=figures.line_style(0)[0],
         colours=palette,
         directions=_n_directions(result),
         unit="px" if made.parameters.get("axial") else "mm",

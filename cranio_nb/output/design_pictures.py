@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
@@ -10,11 +11,17 @@ from ..evaluation.against_truth import TruthCheck
 from ..evaluation.paper_tables import pick_slices
 from ..mesh import INNER, OUTER
 from ..methods.slicewise.slices import SlicedDesign, SliceResult
+from ..pipeline.preparation import Prepared
 from ..pipeline.run import RunResult
+from ..volume import Volume
 from .pages import Shot, lowest_shown, shot
 
 N_SLICES = 6
 """Slices shown."""
+_SEEN = {"axial": "from the feet", "coronal": "from the front", "sagittal": "from the left"}
+_MARGIN_MM = 14.0  # around the bone, room for the letters
+_BELOW_MM = 100.0  # shown of the scan below the head's centre
+_CROSSED = "the curves cross: do not trust the shape here"
 
 
 def view_shots(result: RunResult) -> list[Shot]:
@@ -42,6 +49,59 @@ def view_shots(result: RunResult) -> list[Shot]:
     return shots
 
 
+def cut_shots(result: RunResult) -> list[Shot]:
+    """The scan with the patch in an axial, a coronal and a sagittal cut through each opening.
+
+    Parameters
+    ----------
+    result : RunResult
+
+    Returns
+    -------
+    list of Shot
+        Three of each opening that is closed, the largest first.
+    """
+    case, patch = result.case, result.prosthesis.patch
+    corners, what = _shown_corners(case), "CT" if case.load.kind == "ct" else "bone mask"
+    shots = []
+    for one in case.closed:
+        place = _place_in(one.opening.sheet if patch is None else patch, one.opening.centre)
+        for name in figures.CUTS:
+            figure = figures.cut_figure(case.scan, patch, name, place, corners)
+            at = f"{name} cut, {_position(case, name, place)}"
+            alt = (
+                f"{what}, {at}, seen {_SEEN[name]}, through opening {one.number} ({one.size.place}): bone is bright,"
+                " the patch blue; orange lines show where the two other cuts lie; letters at the edges name the"
+                " patient's sides; the scale bar is 50 mm."
+            )
+            shots.append(shot(figure, alt=_capital(alt), caption=f"{_capital(at)}, seen {_SEEN[name]}"))
+    return shots
+
+
+def _shown_corners(case: Prepared) -> NDArray[np.float64]:
+    """Lowest and highest x, y, z of the bone with a margin, without what lies far below the head's centre."""
+    box = case.bone.box()
+    ends = np.array([[one.start, one.stop - 1] for one in box])
+    corners = case.bone.to_world(np.stack(np.meshgrid(*ends), axis=-1).reshape(-1, 3))
+    low, high = corners.min(axis=0) - _MARGIN_MM, corners.max(axis=0) + _MARGIN_MM
+    low[2] = max(low[2], case.openings[0].head_centre[2] - _BELOW_MM)
+    return np.stack([low, high])
+
+
+def _place_in(mask: Volume, point: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The voxel of a mask that is nearest to a point, world mm."""
+    places = mask.to_world(np.argwhere(mask.voxels))
+    return places[np.argmin(((places - point) ** 2).sum(axis=1))]
+
+
+def _position(case: Prepared, name: str, place: NDArray[np.float64]) -> str:
+    """Where a cut lies: the axial one by its plane of the scan, the others in mm."""
+    if name == "axial":
+        return f"plane {round(float(case.bone.to_voxel(place)[0]))}"
+    axis = {"coronal": 1, "sagittal": 0}[name]
+    return f"{'xyz'[axis]} {place[axis]:.0f} mm"
+
+
 def slice_shots(result: RunResult) -> list[Shot]:
     """A few slices of each opening, in the first direction it was cut along, with all that was done in them.
 
@@ -52,24 +112,34 @@ def slice_shots(result: RunResult) -> list[Shot]:
     Returns
     -------
     list of Shot
-        `N_SLICES` in all, two of each opening at least; empty for a method without slices.
+        `N_SLICES` in all, two of each opening at least, and one more where curves cross in other directions only;
+        empty for a method without slices.
     """
     made = result.prosthesis
-    # the first direction of each opening shows how the method works; the others look alike
     skeleton = bool(made.parameters.get("axial", False))
     sliced = [part for part in made.working if isinstance(part, SlicedDesign)]
-    first = [next((part for part in sliced if part.opening is one), None) for one in result.case.openings]
+    by_opening = [[part for part in sliced if part.opening is one] for one in result.case.openings]
     shots = []
-    for number_of, part in enumerate(first, 1):
-        if part is None:
-            continue
-        at = f"opening {number_of}, slice" if len(first) > 1 else "slice"
-        # spread over the slices, with one of each status
-        for i in pick_slices([s.status for s in part.slices], max(2, N_SLICES // len(first))):
-            s, title = part.slices[i], f"{at} {i + 1} of {len(part.slices)}"
+    for number, parts in enumerate(by_opening, 1):
+        of = f"opening {number}, " if len(by_opening) > 1 else ""
+        for direction, i in _picked(parts, max(2, N_SLICES // len(by_opening))):
+            part, s = parts[direction], parts[direction].slices[i]
+            turned = f"direction {direction + 1}, " if direction else ""
+            title = f"{of}{turned}slice {i + 1} of {len(part.slices)}"
             figure = figures.slice_figure(part, s, result.case.bone, made.patch, skeleton=skeleton)
             shots.append(shot(figure, alt=_slice_alt(title, s), caption=_slice_caption(title, s)))
     return shots
+
+
+def _picked(parts: list[SlicedDesign], n: int) -> list[tuple[int, int]]:
+    """Slices of one opening to show, as (direction, slice)."""
+    if not parts:
+        return []
+    # the first direction shows how the method works; the others look alike, unless curves cross in them
+    kinds = [["crossed" if len(s.crossings) else s.status for s in part.slices] for part in parts]
+    shown = [(0, i) for i in pick_slices(kinds[0], n)]
+    crossed = [(k, i) for k, row in enumerate(kinds) for i, kind in enumerate(row) if kind == "crossed"]
+    return shown if set(shown) & set(crossed) else shown + crossed[len(crossed) // 2 :][:1]
 
 
 def distance_shots(result: RunResult) -> list[Shot]:
@@ -97,10 +167,10 @@ def distance_shots(result: RunResult) -> list[Shot]:
         figure = figures.distance_figure(made.mesh, made.surface(label), d, sign * towards, top_mm=top_mm)
         alt = (
             f"Distance map of the {side} side: dark blue 0 mm, yellow {top_mm:g} mm or more from the true surface; "
-            f"mean {d.mean():.2f} mm, largest {d.max():.2f} mm; scale bar 20 mm."
+            f"mean {d.mean():.2f} mm, largest {d.max():.2f} mm, ringed; scale bar 20 mm."
         )
         seen = "from outside" if sign > 0 else "from inside the head"
-        shots.append(shot(figure, alt=alt, caption=f"{side.capitalize()} side, seen {seen}"))
+        shots.append(shot(figure, alt=alt, caption=f"{side.capitalize()} side, seen {seen}: ring at {d.max():.2f} mm"))
     bar = figures.colour_bar_figure(top_mm, "Distance from the true surface (mm)")
     alt = f"Colour scale of both maps: distance from the true surface, dark blue 0 mm to yellow {top_mm:g} mm."
     return [*shots, shot(bar, alt=alt, caption="Colour scale of both maps")]
@@ -108,16 +178,16 @@ def distance_shots(result: RunResult) -> list[Shot]:
 
 def _slice_caption(title: str, s: SliceResult) -> str:
     """Angles and steps of a slice, outer and inner; for a slice without its own curves, why it has none."""
-    inflation = s.inflation
+    inflation, warning = s.inflation, f"; {_CROSSED}" if len(s.crossings) else ""
     if inflation is None:
-        return f"{_capital(title)}: {s.status} ({s.reason.rstrip('.')})."
+        return f"{_capital(title)}: {s.status} ({s.reason.rstrip('.')}){warning}."
     # both balloons with their end angles and steps
     angles = "; ".join(
         f"{side}: θ₀ {inflation.theta0_deg[i]:.0f}°, θ₁ {inflation.theta1_deg[i]:.0f}°, {_steps(inflation.n_iter[i])}"
         + ("" if inflation.converged[i] else ", not at rest")
         for i, side in enumerate(("outer", "inner"))
     )
-    return f"{_capital(title)}: {angles}."
+    return f"{_capital(title)}: {angles}{warning}."
 
 
 def _slice_alt(title: str, s: SliceResult) -> str:
@@ -128,7 +198,11 @@ def _slice_alt(title: str, s: SliceResult) -> str:
         "carried": "the curves across the gap are taken from the neighbouring slices",
         "skipped": "the gap is left open",
     }[s.status]
-    return f"Cut through the skull, {title}: {what}; the patch is light blue, the bone grey; scale bar 20 mm."
+    crossed = "; crosses mark where the two curves cross each other" if len(s.crossings) else ""
+    return (
+        f"Cut through the skull, {title}: {what}{crossed}; the patch is light blue, the bone grey; letters name the"
+        " sides; scale bar 20 mm."
+    )
 
 
 def _steps(n: int) -> str:

@@ -65,6 +65,36 @@ def part_folder(place: Path) -> Iterator[Path]:
                 _remove(part)
 
 
+@contextmanager
+def held_lock(path: Path) -> Iterator[bool]:
+    """Hold a file's lock, which the system frees when the process ends, however it ends.
+
+    Parameters
+    ----------
+    path : Path
+        Made if missing; it stays.
+
+    Returns
+    -------
+    context manager of bool
+        Whether this process holds it; False where another one does.
+
+    Examples
+    --------
+    >>> with held_lock(Path("lock")) as first, held_lock(Path("lock")) as second:
+    ...     print(first, second)
+    True False
+    """
+    with open(path, "ab") as lock:
+        alone = _hold(lock)
+        try:
+            yield alone
+        finally:
+            if alone:
+                with suppress(OSError):
+                    _unlock(lock)
+
+
 def commit(part: Path, stale: list[str]) -> None:
     """Declare the files of a part folder whole, and move them into the folder that it lies in.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from functools import cached_property
 from os import PathLike
 
 from ..errors import InputRefused, NoOpening
@@ -15,7 +16,8 @@ from ..vault.opening_choice import JudgedOpening, choose_openings
 from ..vault.opening_size import OpeningSize
 from ..vault.remarks import orientation_remarks, thickness_remarks
 from ..volume import Volume, same_grid
-from .survey import survey_scan
+from .input_digest import digest_volume
+from .survey import Survey, survey_scan
 
 Progress = Callable[[str, float], None]
 
@@ -27,6 +29,8 @@ class Prepared:
     Parameters
     ----------
     load : LoadReport
+    scan : Volume
+        HU, or a bool mask, as it was read.
     bone : Volume
         Bool mask of the skull.
     closed, left_open : tuple of JudgedOpening
@@ -40,6 +44,7 @@ class Prepared:
     """
 
     load: LoadReport
+    scan: Volume
     bone: Volume
     closed: tuple[JudgedOpening, ...]
     left_open: tuple[JudgedOpening, ...]
@@ -66,6 +71,18 @@ class Prepared:
         tuple of OpeningSize
         """
         return tuple(one.size for one in self.closed)
+
+    @cached_property
+    def digests(self) -> dict[str, str]:
+        """What tells this input from others: the digest of the scan, and of the truth where there is one.
+
+        Returns
+        -------
+        dict of str to str
+            "scan", "truth" -> SHA-256 in hex, made when first asked for.
+        """
+        volumes = {"scan": self.scan, "truth": self.truth}
+        return {name: digest_volume(volume) for name, volume in volumes.items() if volume is not None}
 
 
 def prepare(
@@ -140,14 +157,39 @@ def prepare(
     seen = survey_scan(scan, threshold)
     said = (*thickness_remarks(load.spacing[0]), *orientation_remarks(seen.frame))
     load = replace(load, findings=(*load.findings, *said))
-    chosen = choose_openings(seen.found, opening)
-    closed = chosen if planes is None else within_planes(chosen, planes)
-    for one in closed:
-        check_margin(one.opening.sheet, f"Opening {one.number}")
+    closed = openings_to_close(seen, opening, planes)
     numbers = {one.number for one in closed}
     left_open = tuple(one for one in seen.found if one.number not in numbers)
     clock.lap("bone and openings")
-    return Prepared(load, seen.bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
+    return Prepared(load, scan, seen.bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
+
+
+def openings_to_close(
+    seen: Survey, numbers: Collection[int] = (), planes: tuple[int, int] | None = None
+) -> tuple[JudgedOpening, ...]:
+    """The openings of a skull that a method gets.
+
+    Parameters
+    ----------
+    seen : Survey
+    numbers, planes
+        As `opening` and `planes` of `prepare`.
+
+    Returns
+    -------
+    tuple of JudgedOpening
+        Largest first, none of them beside the border of the image.
+
+    Raises
+    ------
+    InputRefused, NoOpening
+        As `prepare`.
+    """
+    chosen = choose_openings(seen.found, numbers)
+    closed = chosen if planes is None else within_planes(chosen, planes)
+    for one in closed:
+        check_margin(one.opening.sheet, f"Opening {one.number}")
+    return closed
 
 
 def within_planes(openings: tuple[JudgedOpening, ...], planes: tuple[int, int]) -> tuple[JudgedOpening, ...]:

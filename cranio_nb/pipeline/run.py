@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from typing import Any
 
 import numpy as np
 
 from ..errors import InputRefused
 from ..evaluation.against_truth import TruthCheck, check_truth
-from ..evaluation.paper_tables import count_not_converged, count_statuses
+from ..evaluation.paper_tables import count_crossed, count_not_converged, count_statuses
 from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
 from ..grid import true_indices
@@ -49,6 +50,8 @@ class RunResult:
         What to know about the design.
     seconds : dict of str to float
         Time of each step.
+    finished : datetime
+        When it was done, UTC.
     """
 
     case: Prepared
@@ -59,6 +62,7 @@ class RunResult:
     truth: TruthCheck | None
     findings: tuple[Finding, ...] = ()
     seconds: dict[str, float] = field(default_factory=dict)
+    finished: datetime = field(default_factory=lambda: datetime.now(UTC))
 
 
 def run_design(
@@ -174,6 +178,10 @@ def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...])
     slices = made.record.get("slices", [])
     counts, restless = count_statuses(slices), count_not_converged(slices)
     candidates = {
+        "CrossedCurves": (
+            count_crossed(slices),
+            "In {} slices the outer and the inner curve cross: do not trust the shape there.",
+        ),
         "CarriedSlices": (counts["carried"], "{} slices could not be bridged and follow their neighbours."),
         "SkippedSlices": (counts["skipped"], "{} slices could not be bridged and were left empty."),
         "NotConverged": (restless, "In {} slices a balloon was stopped before it came to rest."),

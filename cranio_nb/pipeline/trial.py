@@ -145,12 +145,35 @@ def attempt(bone: Volume, openings: Sequence[Opening], contender: Contender) -> 
         made = design(bone, openings, method=contender.method, preset=contender.preset, **contender.options)
         check_patch(made, openings)
     except CranioError as error:
-        status, code, message = _status(error), error.code, str(error)
+        status, code, message = status_of(error), error.code, str(error)
     except Exception as error:  # a method's fault is a row of the table, not the end of it
         code = type(error).__name__
         status, message = "broken", f"Something unforeseen went wrong in the method ({code})."
     spent = time.perf_counter() - began, time.process_time() - cpu
     return Trial(contender, status, made and replace(made, working=()), code, message, *spent, peak_memory())
+
+
+def status_of(error: CranioError) -> str:
+    """How a trial ended by an error.
+
+    Parameters
+    ----------
+    error : CranioError
+
+    Returns
+    -------
+    str
+        One of `STATUSES`.
+
+    Examples
+    --------
+    >>> status_of(NoOpening("NoOpening", "There is nothing to close."))
+    'no patch'
+    """
+    # the openings lie inside the image, as was checked before; a patch that does not is the method's failure
+    if isinstance(error, NoOpening) or error.code in ("OpeningLeavesImage", "PatchLeavesOpening"):
+        return "no patch"
+    return "refused" if isinstance(error, InputRefused) else "broken"
 
 
 def attempt_apart(bone: Volume, openings: Sequence[Opening], contender: Contender) -> Trial:
@@ -225,10 +248,3 @@ def _child(folder: str, affine: Any, places: list[Any], contender: Contender, me
         return trial, None
     patch = np.flatnonzero(trial.prosthesis.patch.voxels)
     return replace(trial, prosthesis=replace(trial.prosthesis, patch=None)), patch
-
-
-def _status(error: CranioError) -> str:
-    # the openings lie inside the image, as was checked before; a patch that does not is the method's failure
-    if isinstance(error, NoOpening) or error.code in ("OpeningLeavesImage", "PatchLeavesOpening"):
-        return "no patch"
-    return "refused" if isinstance(error, InputRefused) else "broken"

@@ -26,7 +26,7 @@ from scipy.linalg import cho_solve_banded, cholesky_banded
 from ..curves import Balloon, Points, normals
 
 PAPER_PRESSURE = 0.062
-"""|k| of the paper, px per index squared, outward (section 3; the paper's own sign is negative)."""
+"""Size of k in the paper, px per index squared, outward (section 3; the paper's own sign is negative)."""
 
 
 def tangent_pressure(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> NDArray[np.float64]:

@@ -30,7 +30,7 @@ SOURCE = "cranio-nb"
 import subprocess, sys
 
 if "google.colab" in sys.modules:
-    command = [sys.executable, "-m", "pip", "install", "-q", f"{SOURCE}[view]", "ipywidgets"]
+    command = [sys.executable, "-m", "pip", "install", "-q", f"{SOURCE}[view]", "anywidget"]
     subprocess.run(command, check=True)"""
 
 

@@ -15,6 +15,8 @@ from ..opening import Opening
 from .opening_size import OpeningSize, measure_opening
 from .verdict import Verdict
 
+_BULGE_MM = 2.0  # by which missing bone may stand out of the surface that the bone around it lets expect
+
 
 @dataclass(frozen=True, eq=False)
 class JudgedOpening:
@@ -26,14 +28,39 @@ class JudgedOpening:
         From 1, largest first among all openings that were found in the skull.
     opening : Opening
     verdict : Verdict
-    whole : bool
-        Whether all of the bone that is missing would lie inside the image.
+    room_mm : float
+        How far the bone that is missing would stay from the edge of the image, mm; below 0: it reaches beyond.
     """
 
     number: int
     opening: Opening
     verdict: Verdict
-    whole: bool
+    room_mm: float
+
+    @property
+    def whole(self) -> bool:
+        """Whether all of the bone that is missing would lie inside the image.
+
+        Returns
+        -------
+        bool
+        """
+        return self.room_mm >= 0
+
+    @property
+    def edge(self) -> str:
+        """What to know of the edge of the image.
+
+        Returns
+        -------
+        str
+            A sentence; empty where the edge is far.
+        """
+        if not self.whole:
+            return "It reaches the edge of the image."
+        if self.room_mm < _BULGE_MM:
+            return f"It ends {self.room_mm:.1f} mm from the edge of the image: bone that bulges there would be cut off."
+        return ""
 
     @cached_property
     def size(self) -> OpeningSize:
@@ -48,7 +75,7 @@ class JudgedOpening:
     def __str__(self) -> str:
         """One line: number, place, size, verdict, confidence and reason."""
         size, verdict = self.size, self.verdict
-        edge = "" if self.whole else " It reaches the edge of the image."
+        edge = f" {self.edge}" if self.edge else ""
         return (
             f"opening {self.number} ({size.place}, {size.length:.0f} x {size.width:.0f} mm,"
             f" planes {size.planes[0]}:{size.planes[1]}): {verdict.kind}, confidence {verdict.confidence:.2f}."

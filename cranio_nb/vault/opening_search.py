@@ -17,7 +17,7 @@ from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
 from .opening_choice import JudgedOpening, choose_openings
-from .outermost_bone import STEP_DEG, OutermostBone, lies_in_image, measure_outermost_bone, open_rays
+from .outermost_bone import STEP_DEG, OutermostBone, room_in_image, measure_outermost_bone, open_rays
 from .ray_grid import filled_from_nearest
 from .thin_bone import Material
 from .verdict import Signs, judge
@@ -105,7 +105,7 @@ def survey_openings(
     for number, rays in enumerate(groups, 1):
         signs = _signs(bone, outermost, rays, radius, material, frame)
         opening = Opening(_sheet(bone, outermost, rays, radius), outermost.grid.centre, frame.ray_axes)
-        judged.append(JudgedOpening(number, opening, judge(signs), lies_in_image(outermost, rays)))
+        judged.append(JudgedOpening(number, opening, judge(signs), room_in_image(outermost, rays)))
     return tuple(judged)
 
 

@@ -31,7 +31,6 @@ _SIDE_DEG = 90.0  # the vault proper, over which its radius is averaged
 _SEEN = 0.75  # of the width of a small opening that is seen through, where rays cross a thick wall aslant
 _SAMPLE_MM = 0.75  # along a ray
 _EDGE_MM = 3.0  # a ray that leaves the image so far before its neighbours meet bone is not followed to the end
-_CLEAR_MM = 2.0  # of image beyond the surface expected across an opening; the missing bone may bulge by as much
 _RIM_RAYS, _AROUND_RAYS = 2, 10  # beside an opening: left out as its rim, and up to where the vault is bent across
 _KNOTS = 500  # rays from which the vault is bent across
 
@@ -152,8 +151,8 @@ def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[
     return sorted(groups, key=np.count_nonzero, reverse=True)
 
 
-def lies_in_image(outermost: OutermostBone, rays: NDArray[np.bool_]) -> bool:
-    """Whether the bone that is missing in an opening would lie inside the image, all of it.
+def room_in_image(outermost: OutermostBone, rays: NDArray[np.bool_]) -> float:
+    """How far the bone that is missing in an opening stays from the edge of the image.
 
     Parameters
     ----------
@@ -163,7 +162,8 @@ def lies_in_image(outermost: OutermostBone, rays: NDArray[np.bool_]) -> bool:
 
     Returns
     -------
-    bool
+    float
+        mm; below 0 where a part of it would lie outside.
 
     Notes
     -----
@@ -171,8 +171,7 @@ def lies_in_image(outermost: OutermostBone, rays: NDArray[np.bool_]) -> bool:
     the bone around it is cut off as well, that surface is not to be trusted, and the bone nearest to it counts.
     """
     near = filled_from_nearest(outermost.radius)[rays] - _EDGE_MM
-    across = _bent_across(outermost, rays) + _CLEAR_MM
-    return bool((outermost.seen[rays] >= np.maximum(near, across)).all())
+    return float((outermost.seen[rays] - np.maximum(near, _bent_across(outermost, rays))).min())
 
 
 def _bent_across(outermost: OutermostBone, rays: NDArray[np.bool_]) -> NDArray[np.float64]:

@@ -89,7 +89,8 @@ def opening_remarks(closed: Sequence[JudgedOpening], left_open: Sequence[JudgedO
     -------
     tuple of Finding
         ``DoubtfulOpening`` (warning) for each doubtful one that is left open, ``ChosenOpening`` (warning) for each that
-        is closed only because it was chosen, ``CutLeftOpen`` (info) for each that was cut and not chosen.
+        is closed only because it was chosen, ``OpeningAtEdge`` (warning) for each that is closed near the edge of the
+        image, ``CutLeftOpen`` (info) for each that was cut and not chosen.
     """
     found = []
     for one in left_open:
@@ -101,4 +102,6 @@ def opening_remarks(closed: Sequence[JudgedOpening], left_open: Sequence[JudgedO
     for one in closed:
         if one.verdict.kind != "cut":
             found.append(Finding("ChosenOpening", "warning", f"Closed, as it was chosen: {one}", one.record()))
+        if one.edge:
+            found.append(Finding("OpeningAtEdge", "warning", f"Closed near the edge of the image: {one}", one.record()))
     return tuple(found)

@@ -98,9 +98,9 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 #
 # The slice is turned so that the **chord**, the straight line between the ends, lies level (thin grey dashes). The
 # orange dashes are the curve that the balloon starts from. It is made from the ends and their tangents and is a good
-# guess already, so little is left to inflate. The broad pink line is the bone that is missing, known because this head
+# guess already, so little is left to inflate. The broad pale line is the bone that is missing, known because this head
 # is synthetic. The two plots at the right (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04
-# explains them. You see the balloon at rest; in a live notebook put `step` to 0 and press play.
+# explains them. You see the balloon at rest; in a live notebook press play to see it again from step 0.
 
 # %% tags=["nbval-check-output"]
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10

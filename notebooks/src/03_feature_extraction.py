@@ -124,7 +124,8 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used. The
 # thin **black line** is the line that was fitted: it goes through the mean of the pixels used. The **green arrow** has
 # its direction, but starts at the white circle. theta0 and theta1 of the caption are the angles between the outer
-# arrows and the chord, the straight line between their two circles; section 4 says which to expect.
+# arrows and the chord, the straight line between their two circles, each with the one to expect there, which section 4
+# explains.
 #
 # **Predict, then move, then explain.** (No sliders? Use `panel.set(skip_mm=0)` in a new cell, and `reach_mm`, `plane`.)
 #
@@ -134,7 +135,7 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # 3. Move `reach` to 40 mm (44 px in section 4): where does the black line leave the pixels?
 
 # %% tags=["nbval-check-output"]
-panel = widgets.features(bone, plane, opening=opening.sheet)
+panel = widgets.features(bone, plane, opening=opening.sheet, case=case)
 panel
 
 # %% [markdown]

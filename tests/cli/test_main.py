@@ -36,7 +36,7 @@ def test_import_and_help_load_nothing_heavy():
         "import sys, cranio_nb.cli.main\n"
         "try: cranio_nb.cli.main.main(['design', '--help'])\n"
         "except SystemExit: pass\n"
-        "heavy = {'matplotlib', 'vtkmodules', 'pyvista', 'ipywidgets', 'scipy', 'skimage'} & set(sys.modules)\n"
+        "heavy = {'matplotlib', 'vtkmodules', 'pyvista', 'anywidget', 'scipy', 'skimage'} & set(sys.modules)\n"
         "sys.exit(','.join(heavy) or 0)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, check=False)

@@ -252,14 +252,14 @@ def test_pages_replace_pages_only(place, monkeypatch):
     fill(Path("notebooks/a.ipynb"), nbformat.writes(nbformat.v4.new_notebook()))
     for out in ("pages", "notebooks"):
         for _ in range(2):
-            assert cranio("lessons", "html", out).exit_code == 0
+            assert cranio("lessons", "html", out, "--folder", "notebooks").exit_code == 0
     Path("mine").mkdir()
     fill(Path("mine/a.html"), "mine")
     Path("linked").mkdir()
     os.link("notebooks/a.ipynb", "linked/a.html")
     before = digest(place)
-    assert cranio("lessons", "html", "mine").exit_code == 5
-    assert cranio("lessons", "html", "linked").exit_code == 2
+    assert cranio("lessons", "html", "mine", "--folder", "notebooks").exit_code == 5
+    assert cranio("lessons", "html", "linked", "--folder", "notebooks").exit_code == 2
     assert digest(place) == before
 
 

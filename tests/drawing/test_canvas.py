@@ -6,6 +6,7 @@ import pytest
 from cranio_nb.drawing.canvas import Canvas, round_length
 from cranio_nb.drawing.palette import BLACK, BLUE, rgb_of
 from cranio_nb.drawing.pixels import Window
+from cranio_nb.drawing.shading import view_axes
 
 
 def places(canvas, colour=BLUE):
@@ -86,3 +87,11 @@ def test_a_legend_shows_each_colour():
 @pytest.mark.parametrize(("longest", "length"), [(0.9, 0.5), (7.0, 5.0), (10.0, 10.0), (49.0, 20.0)])
 def test_round_lengths(longest, length):
     assert round_length(longest) == length
+
+
+def test_the_letters_are_those_of_the_view():
+    shown, wanted = Canvas(100, 80), Canvas(100, 80)
+    shown.sides((0, 0, 100, 80), *view_axes((1, 0, 0))[:2])  # from the left: the face is at the left
+    for at, letter in (((88, 40), "P"), ((12, 40), "A"), ((50, 68), "I"), ((50, 12), "S")):
+        wanted.text(*at, letter, size=14, anchor="mm", halo=True)
+    assert (shown.array() == wanted.array()).all()

@@ -82,7 +82,7 @@ faces = np.concatenate([np.column_stack([at, at + 1, at + n]), np.column_stack([
 scene = scene3d.show_meshes(Mesh(points, faces), alt="Waves <&>.")
 assert scene3d.plotter(scene).meshes[0].n_cells <= scene3d.MAX_FACES
 data, _ = scene._repr_mimebundle_()
-assert data["text/html"].startswith('<iframe title="Waves &lt;&amp;&gt;."') and "image/png" in data
+assert '<iframe title="Waves &lt;&amp;&gt;."' in data["text/html"] and "image/png" in data
 print(len(data["text/html"]))
 """
 
@@ -93,3 +93,29 @@ def test_behind_a_proxy_the_scene_is_a_page_of_its_own_and_needs_no_opengl():
     done = subprocess.run([sys.executable, "-c", REMOTE], env=place, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0, done.stderr[-2000:]
     assert 5e5 < int(done.stdout.split()[-1]) < 5e6
+
+
+def test_faces_that_thinning_folded_are_turned_outwards():
+    mesh = cube(40)
+    folded = Mesh(mesh.vertices, np.concatenate([mesh.faces[:2, ::-1], mesh.faces[2:]]))
+    assert (scene3d._turned_outwards(folded, mesh.vertex_normals) == mesh.faces).all()
+
+
+MARKS = """
+import numpy as np
+from cranio_nb.drawing import scene3d
+from cranio_nb.mesh import Mesh
+corners = np.array([[-45.0, 0, 0], [45, 0, 0], [0, 60, 0], [0, 0, 60]])
+scene = scene3d.show_meshes(Mesh(corners, np.array([[0, 1, 2], [0, 1, 3]])), alt="Two faces.", towards=(1, 0, 0))
+bar, *letters = (np.asarray(mark.points) for mark in scene3d._marks(scene))
+print(np.ptp(bar, axis=0).argmax(), round(float(np.ptp(bar, axis=0).max())), len(letters))
+print(*(round(float(letter[:, 0].mean())) for letter in letters))
+"""
+
+
+def test_a_bar_and_the_letters_beside_the_line_of_sight_lie_in_the_scene():
+    pytest.importorskip("pyvista")
+    done = subprocess.run([sys.executable, "-c", MARKS], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr[-2000:]
+    # seen from the left: the bar runs along y, 20 mm; A, P, S and I stand in the plane of the middle
+    assert done.stdout.split() == ["1", "20", "4", "0", "0", "0", "0"]

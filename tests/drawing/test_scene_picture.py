@@ -13,7 +13,7 @@ FRONT = np.array([0.0, -1.0, 0.0])
 def test_a_scene_just_fits_its_picture():
     for size in (20.0, 40.0, 400.0):
         shown = draw_parts([Part(cube(size), BLUE, "", None)], FRONT)
-        body = np.flatnonzero(shown[:-30, WIDTH // 2].min(axis=1) < 200)
+        body = np.flatnonzero(shown[:-30, WIDTH // 2 + 30].min(axis=1) < 200)
         assert np.ptp(body) == pytest.approx(HEIGHT - 80, abs=4) and shown.shape[1] == WIDTH
 
 

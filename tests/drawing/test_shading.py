@@ -58,3 +58,13 @@ def test_views_are_upright_as_a_viewer_meets_the_patient():
     np.testing.assert_allclose(shading.view_axes((0, -1, 0)), [[1, 0, 0], [0, 0, -1], [0, -1, 0]], atol=1e-12)
     np.testing.assert_allclose(shading.view_axes((1, 0, 0)), [[0, 1, 0], [0, 0, -1], [1, 0, 0]], atol=1e-12)
     np.testing.assert_allclose(shading.view_axes((0, 0, 2)), [[-1, 0, 0], [0, 1, 0], [0, 0, 1]], atol=1e-12)
+
+
+def test_a_place_is_told_its_pixel():
+    """The node nearest to the viewer is where the picture is nearest."""
+    mesh, towards = ball((3, -7, 11), 20), (0.3, -0.8, 0.4)
+    picture, axes = shading.render([Solid(mesh, RED)], towards, px_mm=0.25), shading.view_axes(towards)
+    nearest = mesh.vertices[np.argmax(mesh.vertices @ axes[2])]
+    col, row = np.rint(picture.pixel_of(nearest, axes)).astype(int)
+    assert picture.depth[row, col] == pytest.approx(picture.depth.max(), abs=0.01)
+    assert picture.depth[row, col] == pytest.approx(nearest @ axes[2], abs=0.01)

@@ -14,9 +14,9 @@ VERDICTS = {
 }
 
 
-def opening(number, kind, whole=True):
+def opening(number, kind, room_mm=20.0):
     """A small sheet at the left of a head's centre."""
     sheet = np.zeros((12, 12, 12), bool)
     sheet[4:8, 3:9, 10] = True
     mm = np.array([[0, 0, 1, 0], [0, 1, 0, 0], [1, 0, 0, 0], [0, 0, 0, 1.0]])
-    return JudgedOpening(number, Opening(Volume(sheet, mm), np.array([1.0, 5.5, 5.5])), VERDICTS[kind], whole)
+    return JudgedOpening(number, Opening(Volume(sheet, mm), np.array([1.0, 5.5, 5.5])), VERDICTS[kind], room_mm)

@@ -13,7 +13,12 @@ INSIDE = (200.0, 110.0)
 
 def pixels_of(panel):
     """The picture on the widget, decoded."""
-    return np.asarray(Image.open(io.BytesIO(panel.front.image.value)).convert("RGB"))
+    return np.asarray(Image.open(io.BytesIO(panel.front.widget.picture)).convert("RGB"))
+
+
+def move(panel, **values):
+    """Move controls in the browser."""
+    panel.front.widget.values = panel.front.widget.values | values
 
 
 def close(jpeg, rgb):

@@ -3,7 +3,7 @@
 import subprocess
 import sys
 
-from cranio_nb.methods import catalogue
+from cranio_nb.methods import catalogue, transfer
 from cranio_nb.methods.piece import Piece
 from cranio_nb.methods.transfer import pack_methods, unpack_methods
 
@@ -14,6 +14,10 @@ def toy(bone, openings, *, n=2):
     """Uses a name of its module."""
     for opening in openings:
         yield Piece(opening.sheet.voxels, (), {"n": FACTOR * n})
+
+
+def older(bone, openings, *, n=1):
+    yield
 
 
 def test_nothing_is_packed_where_nothing_was_added():
@@ -38,3 +42,21 @@ def test_a_process_that_cannot_import_the_module_gets_the_method(tmp_path):
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines() == ["{'n': 2, 'smooth': True} ('default', 'one')", "{'n': 6}"]
+
+
+def test_a_process_that_has_an_older_form_gets_the_newer_one(monkeypatch):
+    monkeypatch.setattr(catalogue, "_added", {})
+    catalogue.add_method("mine", toy)
+    monkeypatch.setattr(transfer, "_MADE", "another process")
+    packed = pack_methods()
+    monkeypatch.undo()
+    monkeypatch.setattr(catalogue, "_added", {"mine": catalogue.Method("mine", older, {})})
+    unpack_methods(packed)
+    assert catalogue.default_options("mine") == {"n": 2, "smooth": True}
+
+
+def test_what_was_packed_here_is_left_as_it_is(monkeypatch):
+    monkeypatch.setattr(catalogue, "_added", {})
+    catalogue.add_method("mine", toy)
+    unpack_methods(pack_methods())
+    assert catalogue.find_method("mine").pieces is toy

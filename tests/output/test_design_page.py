@@ -1,6 +1,7 @@
 """The report page: complete by itself, readable without seeing, and safe against what others wrote."""
 
 import dataclasses
+import datetime
 
 import pytest
 from html_page import Page, assert_pictures_have_words, assert_self_contained, assert_structured_for_reading_aloud
@@ -8,18 +9,8 @@ from html_page import Page, assert_pictures_have_words, assert_self_contained, a
 from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, balloon_ranges
 from cranio_nb.output import design_page
 from cranio_nb.output.design_pictures import N_SLICES
-from cranio_nb.pipeline.preparation import prepare
-from cranio_nb.pipeline.run import RunResult, run_design
+from cranio_nb.pipeline.run import RunResult
 from cranio_nb.readers import Finding
-from data_synth import phantom_case
-from data_synth.files import write_case
-
-
-@pytest.fixture(scope="module")
-def result(tmp_path_factory) -> RunResult:
-    folder = tmp_path_factory.mktemp("case")
-    write_case(folder, phantom_case("tiny", "unilateral", 0))
-    return run_design(prepare(folder / "ct", truth=folder / "truth.nii.gz"), preset="paper")
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +35,8 @@ def test_page_is_self_contained(page):
 
 
 def test_every_picture_is_a_png_with_words(page):
-    assert_pictures_have_words(page, 3 + N_SLICES + 3)
+    views, cuts, maps_and_scale, errors = 3, 3, 3, 2
+    assert_pictures_have_words(page, views + cuts + N_SLICES + maps_and_scale + errors)
 
 
 def test_page_is_structured_for_reading_aloud(page):
@@ -74,7 +66,12 @@ def test_own_defaults_are_not_set_beside_the_paper(result):
 
 def test_page_without_truth_or_slices(bare):
     page = Page(design_page.report_page(bare))
-    assert len(page.all("img")) == 3 and "known truth" not in page.text and "balloons in numbers" not in page.text
+    views, cuts = 3, 3
+    assert (
+        len(page.all("img")) == views + cuts
+        and "known truth" not in page.text
+        and "balloons in numbers" not in page.text
+    )
 
 
 def test_markup_in_findings_is_shown_not_run(bare):
@@ -82,3 +79,34 @@ def test_markup_in_findings_is_shown_not_run(bare):
     text = design_page.report_page(dataclasses.replace(bare, findings=(evil,)))
     assert "<script" not in text and "&lt;script&gt;" in text
     assert "<script>alert('x')</script>&\"" in Page(text).text
+
+
+def test_two_reports_can_be_told_apart(page, result, bare):
+    digests = result.case.digests
+    assert set(digests) == {"scan", "truth"} and all(digest in page.text for digest in digests.values())
+    label = f"Case {digests['scan'][:4]}-{digests['scan'][4:8]}, {result.finished:%Y-%m-%d %H:%M} UTC."
+    assert label in page.text
+    later = dataclasses.replace(bare, finished=result.finished + datetime.timedelta(days=1))
+    assert label not in Page(design_page.report_page(later)).text
+
+
+def test_the_largest_errors_stand_where_they_are(page, result):
+    for side, distances in result.truth.distances.items():
+        assert f"Largest {side} error {distances.max():.2f} mm" in page.text
+        assert f"{side.capitalize()} side, seen from" in page.text and f"ring at {distances.max():.2f} mm" in page.text
+
+
+def test_no_slice_is_distrusted_without_a_reason(page, result):
+    n = len(result.prosthesis.record["slices"])
+    assert f"Slices with crossed curves 0 of {n}" in page.text and "Do not trust" not in page.text
+
+
+def test_crossed_curves_are_counted_shown_and_not_trusted(crossed):
+    sliced = crossed.prosthesis.working[0]
+    n_crossed, n = sum(len(s.crossings) > 0 for s in sliced.slices), len(sliced.slices)
+    page = Page(design_page.report_page(crossed))
+    assert n_crossed == 2 and f"Slices with crossed curves {n_crossed} of {n}" in page.text
+    assert f"Do not trust every slice: in {n_crossed} of {n}" in page.text
+    assert f"Curves cross in {n_crossed}." in page.text
+    assert page.text.count("curves cross: do not trust the shape here") >= 1
+    assert page.source.count("curves cross</td>") == n_crossed

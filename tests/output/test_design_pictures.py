@@ -3,20 +3,8 @@
 import dataclasses
 
 import numpy as np
-import pytest
 
 from cranio_nb.output import design_pictures
-from cranio_nb.pipeline.preparation import prepare
-from cranio_nb.pipeline.run import run_design
-from data_synth import phantom_case
-from data_synth.files import write_case
-
-
-@pytest.fixture(scope="module")
-def result(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("case")
-    write_case(folder, phantom_case("tiny", "unilateral", 0))
-    return run_design(prepare(folder / "ct", truth=folder / "truth.nii.gz"), preset="paper")
 
 
 def test_the_first_view_faces_the_opening(result):
@@ -48,3 +36,33 @@ def test_the_scale_ends_at_a_round_number_above_nearly_all(result):
 def test_without_a_truth_or_slices_there_is_nothing_to_show(result):
     bare = dataclasses.replace(result, truth=None, prosthesis=dataclasses.replace(result.prosthesis, working=()))
     assert design_pictures.distance_shots(bare) == design_pictures.slice_shots(bare) == []
+
+
+def test_the_scan_is_shown_in_three_planes_through_the_patch(result):
+    shots = design_pictures.cut_shots(result)
+    assert [shot.caption.split(" cut")[0] for shot in shots] == ["Axial", "Coronal", "Sagittal"]
+    assert all("CT" in shot.alt and "scale bar is 50 mm" in shot.alt and "left" in shot.alt for shot in shots)
+    place = design_pictures._place_in(result.prosthesis.patch, result.case.openings[0].centre)
+    assert result.prosthesis.patch.at(place, outside=False)
+    plane = round(float(result.case.bone.to_voxel(place)[0]))
+    assert shots[0].caption == f"Axial cut, plane {plane}, seen from the feet"
+
+
+def test_all_bone_above_the_face_is_in_the_cuts(result):
+    low, high = design_pictures._shown_corners(result.case)
+    places = result.case.bone.to_world(np.argwhere(result.case.bone.voxels))
+    centre = result.case.openings[0].head_centre
+    above = places[places[:, 2] > centre[2] - 50]
+    assert (above > low).all() and (above < high).all()
+
+
+def test_a_slice_whose_curves_cross_is_shown_and_named(crossed):
+    shots = design_pictures.slice_shots(crossed)
+    told = [shot for shot in shots if "do not trust" in shot.caption]
+    assert told and all("crosses mark where" in shot.alt for shot in told)
+    first, *rest = crossed.prosthesis.working
+    assert not rest
+    # in another direction only: one more picture than of the first alone
+    plain = dataclasses.replace(first, slices=tuple(s for s in first.slices if not len(s.crossings)))
+    picked = design_pictures._picked([plain, first], 2)
+    assert len(picked) == 3 and picked[-1][0] == 1 and len(first.slices[picked[-1][1]].crossings)

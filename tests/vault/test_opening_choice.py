@@ -43,7 +43,7 @@ def test_without_any_that_was_cut_the_doubtful_ones_are_listed():
 
 
 def test_what_reaches_the_edge_of_the_image_is_refused_only_where_it_is_to_be_closed():
-    found = (opening(1, "cut", whole=False), opening(2, "cut"))
+    found = (opening(1, "cut", room_mm=-1.0), opening(2, "cut"))
     for asked in ((), (1,), (1, 2)):
         with pytest.raises(InputRefused, match="outside the image") as refused:
             choose_openings(found, asked)
@@ -55,7 +55,7 @@ def test_what_reaches_the_edge_of_the_image_is_refused_only_where_it_is_to_be_cl
 
 def test_the_line_ends_with_the_reason_and_with_the_edge_of_the_image_where_it_is_reached():
     assert str(opening(1, "cut")).endswith(" It is plain.")
-    assert str(opening(1, "cut", whole=False)).endswith(" It is plain. It reaches the edge of the image.")
+    assert str(opening(1, "cut", room_mm=-1.0)).endswith(" It is plain. It reaches the edge of the image.")
 
 
 def test_a_skull_is_intact_without_an_opening_that_was_cut():
@@ -71,3 +71,10 @@ def test_the_record_holds_number_verdict_place_and_size():
     assert record["number"] == 3 and record["kind"] == "doubtful" and record["confidence"] == 0.4
     assert record["reason"] == "It is in doubt." and record["whole"] is True
     assert record["place"] == "left" and record["planes"] == (4, 7)
+
+
+def test_missing_bone_near_the_edge_of_the_image_is_closed_and_said():
+    near = opening(1, "cut", room_mm=1.25)
+    assert choose_openings((near,)) == (near,)
+    assert "1.2 mm from the edge" in str(near) and near.record()["whole"] is True
+    assert not opening(1, "cut").edge

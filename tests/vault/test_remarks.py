@@ -45,3 +45,9 @@ def test_what_is_left_open_in_doubt_or_closed_against_the_verdict_is_said():
     assert (chosen.code, chosen.severity) == ("ChosenOpening", "warning") and "opening 2" in chosen.message
     (cut,) = opening_remarks(closed[1:1], (opening(5, "cut"),))
     assert (cut.code, cut.severity) == ("CutLeftOpen", "info") and "opening 5" in cut.message
+
+
+def test_closing_near_the_edge_of_the_image_is_a_warning():
+    far, near = opening(1, "cut"), opening(2, "cut", room_mm=0.5)
+    (said,) = opening_remarks((far, near), ())
+    assert said.code == "OpeningAtEdge" and said.severity == "warning" and said.values["number"] == 2

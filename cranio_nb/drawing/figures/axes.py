@@ -15,7 +15,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ..palette import BLACK, MIDDLE_GREY, rgb_shares, side_letter
+from ..palette import BLACK, MIDDLE_GREY, WHITE, rgb_shares, side_letter
 
 DPI = 110
 
@@ -45,6 +45,23 @@ def new_figure(width_in: float, height_in: float) -> tuple[Figure, Axes]:
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     return figure, axes
+
+
+def laid_out_figure(width_in: float, height_in: float) -> Figure:
+    """An empty figure that makes room for the labels of the axes that it gets.
+
+    Parameters
+    ----------
+    width_in, height_in : float
+        Inches.
+
+    Returns
+    -------
+    Figure
+    """
+    figure = Figure(figsize=(width_in, height_in), dpi=DPI, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure
 
 
 def png(figure: Figure) -> bytes:
@@ -90,21 +107,35 @@ def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str 
     ax.text(x, y + 0.02 * (y1 - y0), text, color=colour, fontsize=8, va="bottom", ha="left")
 
 
-def name_sides(ax: Axes, right_down: NDArray[np.float64]) -> None:
-    """Write the letters of the patient's sides at the edges of a view: right, left and below.
+def name_sides(ax: Axes, right_down: NDArray[np.float64], *, colour: str = MIDDLE_GREY) -> None:
+    """Write the letters of the patient's sides at the edges of a view: right, left and above.
 
     Parameters
     ----------
     ax : Axes
     right_down : ndarray, shape (2 or more, 3)
         World directions (LPS) to the right and down in the picture.
+    colour : str
     """
     right, down = right_down[:2]
-    # letters at the right, the left and the lower edge, turned inwards
+    # letters at the right, the left and the upper edge, turned inwards
     for x, y, direction in ((0.99, 0.5, right), (0.01, 0.5, -right), (0.5, 0.99, -down)):
         across, up = {0.99: "right", 0.01: "left"}.get(x, "center"), "top" if y > 0.9 else "center"
-        letter, style = side_letter(direction), {"ha": across, "va": up, "color": MIDDLE_GREY}
+        letter, style = side_letter(direction), {"ha": across, "va": up, "color": colour}
         ax.text(x, y, letter, style, transform=ax.transAxes, fontsize=9, weight="bold")
+
+
+def ring_place(ax: Axes, x: float, y: float) -> None:
+    """Draw a ring around a place, dark with a light edge, so that it is seen on any ground.
+
+    Parameters
+    ----------
+    ax : Axes
+    x, y : float
+        In units of the axis.
+    """
+    for colour, width in ((WHITE, 3.6), (BLACK, 1.6)):
+        ax.plot([x], [y], ls="none", marker="o", ms=15, mfc="none", mec=colour, mew=width)
 
 
 def fill_mask(

@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from ...vault import slicing
 from ...volume import Volume
-from ..palette import BLACK, BLUE, BONE, GREEN, MIDDLE_GREY, ORANGE, PURPLE, TRUTH, VERMILLION
+from ..palette import BLACK, BLUE, BONE, GREEN, MIDDLE_GREY, ORANGE, PURPLE, TRUTH, VERMILLION, faded
 from .axes import Figure, fill_mask, name_sides, new_figure, scale_bar
 
 _COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, BLACK, ORANGE, MIDDLE_GREY)
@@ -85,7 +85,7 @@ def outlines_figure(
     cols = np.arange(-reach_mm, reach_mm, _PIXEL_MM)
     extent = (cols[0], cols[-1], rows[-1], rows[0])
     figure, ax = new_figure(5.0, 5.0 * len(rows) / len(cols))
-    for mask, colour in ((bone, BONE), (truth, TRUTH)):
+    for mask, colour in ((bone, BONE), (truth, faded(TRUTH))):
         if mask is not None:
             fill_mask(ax, slicing.sample_mask(mask, frame, rows, cols), extent, colour)
     # outlines of the smoothed masks: those of voxels would be stairs

@@ -11,7 +11,7 @@ from ...stages import feature_extraction
 from ...vault import slicing
 from ...volume import Volume
 from ..palette import BLACK, BONE, INNER, OUTER, PATCH, TANGENT
-from .axes import Axes, Figure, fill_mask, new_figure, scale_bar
+from .axes import Axes, Figure, fill_mask, name_sides, new_figure, scale_bar
 
 _COLOURS = (OUTER, INNER)
 _PIXEL_MM = 0.35
@@ -54,7 +54,8 @@ def draw_slice(
         if len(start):
             ax.plot(*unit * start.T[::-1], color=colour, ls=(0, (4, 2)), lw=1.1)
         ax.plot(*unit * curve.T[::-1], color=colour, ls="-", lw=1.8)
-    # ends of the gap on top
+    # on top: where the curves cross, and the ends of the gap
+    ax.plot(*unit * result.crossings.T[::-1], ls="none", marker="x", ms=9, mew=2.2, color=BLACK)
     for ends in result.ends:
         _draw_ends(ax, unit * ends.points, ends.tangents)
     ax.set_xlim(left, right)
@@ -65,7 +66,7 @@ def draw_slice(
 def slice_figure(
     sliced: SlicedDesign, result: SliceResult, bone: Volume, patch: Volume | None, *, skeleton: bool = False
 ) -> Figure:
-    """A slice of a design on a new figure.
+    """A slice of a design on a new figure, with the letters of the patient's sides.
 
     Parameters
     ----------
@@ -78,6 +79,7 @@ def slice_figure(
     """
     figure, ax = new_figure(3.4, 2.5)
     draw_slice(ax, sliced, result, bone, patch, skeleton=skeleton)
+    name_sides(ax, sliced.frames[result.plane][[2, 1]])
     return figure
 
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...mesh import Mesh
 from ..palette import NO_VALUE, PROSTHESIS, SKULL, rgb_shares
 from ..shading import Picture, Solid, render, view_axes
-from .axes import Axes, Figure, colour_scale, name_sides, scale_bar, show_pixels
+from .axes import Axes, Figure, colour_scale, name_sides, ring_place, scale_bar, show_pixels
 
 SIDES = {
     "from the left": (1.0, 0.0, 0.0),
@@ -85,6 +85,8 @@ def distance_figure(
 ) -> Figure:
     """One side of a prosthesis, coloured by the distance of its nodes from the true surface; the rest is grey.
 
+    A ring is drawn around the node that is farthest away.
+
     Parameters
     ----------
     whole, surface : Mesh
@@ -106,7 +108,10 @@ def distance_figure(
     near = np.asarray(towards, float) / np.linalg.norm(towards) * _LIFT_MM
     coloured = Solid(Mesh(surface.vertices + near, surface.faces), colour_scale(top_mm).to_rgba(distances)[:, :3])
     solids = [Solid(whole, rgb_shares(NO_VALUE)), coloured]
-    figure, ax = _with_rim(render(solids, towards, px_mm=px_mm, shaded=False))
+    picture = render(solids, towards, px_mm=px_mm, shaded=False)
+    figure, ax = _with_rim(picture)
+    x, y = picture.pixel_of(surface.vertices[np.argmax(distances)], view_axes(towards)) + _RIM_PX
+    ring_place(ax, x, y)
     name_sides(ax, view_axes(towards))
     scale_bar(ax, 20.0 / px_mm, "20 mm")
     return figure

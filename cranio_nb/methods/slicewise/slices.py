@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...curves import GapEnds, Points
+from ...geometry.crossings import crossings
 from ...opening import Opening
 
 Pair = tuple[float, float]
@@ -107,16 +109,29 @@ class SliceResult:
     turns_rad: NDArray[np.float64] = field(default_factory=lambda: np.ones((2, 2)))
     inflation: Inflation | None = None
 
+    @cached_property
+    def crossings(self) -> Points:
+        """Where the outer and the inner curve cross: there the patch is inside out, and its slice not to be trusted.
+
+        Returns
+        -------
+        ndarray, shape (k, 2)
+            Slice (row, col).
+        """
+        return crossings(*self.curves) if len(self.curves) == 2 else np.empty((0, 2))
+
     def record(self) -> dict[str, Any]:
         """JSON-able values of the slice.
 
         Returns
         -------
         dict
-            plane, status, reason, and those of `Inflation.record`.
+            plane, status, reason, where there are curves whether they are crossed, and those of `Inflation.record`.
         """
         # a slice without a balloon has no angles and no iterations to record
-        facts = {"plane": self.plane, "status": self.status, "reason": self.reason}
+        facts: dict[str, Any] = {"plane": self.plane, "status": self.status, "reason": self.reason}
+        if len(self.curves):
+            facts["crossed"] = bool(len(self.crossings))
         return facts if self.inflation is None else facts | self.inflation.record()
 
 

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from ...errors import InputRefused
 
+START = "as at the start"
+"""Name of the preset that every panel has."""
 _DECADE = (1.0, 1.25, 1.6, 2.0, 2.5, 3.15, 4.0, 5.0, 6.3, 8.0)
 """Preferred numbers, series R10 of ISO 3: even steps of the logarithm, in round numbers."""
 
@@ -33,6 +35,9 @@ class Slider:
         Whether it can be played.
     expert : bool
         Whether it is folded away at first.
+    ahead : int, optional
+        How many of its stops a page without a kernel draws ahead, beside those that presets and text name; as many as
+        there is room for when not given.
     """
 
     name: str
@@ -46,6 +51,7 @@ class Slider:
     log: bool = False
     player: bool = False
     expert: bool = False
+    ahead: int | None = None
 
     @property
     def stops(self) -> tuple[float, ...]:

@@ -13,7 +13,9 @@ from ...drawing.pixels import Window, windowed
 from ...volume import Volume
 from .controls import Slider, View
 from .panel import Panel
-from .parts import SIDE, annotate_slice, count_hu, hu_chart
+from .parts import HEIGHT, RIGHT, WIDTH, annotate_slice, count_hu, hu_chart, left_window
+
+_AIR = -400  # HU: the window holds what lies above
 
 
 def ct_viewer(ct: Volume) -> Panel:
@@ -32,28 +34,31 @@ def ct_viewer(ct: Volume) -> Panel:
     last = ct.shape[0] - 1
     controls = (
         Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
-        Slider("centre", "window centre", -1000, 2000, 300, 10, unit="HU"),
-        Slider("width", "window width", 50, 4000, 1500, 10, unit="HU"),
+        Slider("centre", "window centre", -1000, 2000, 300, 10, unit="HU", ahead=0),
+        Slider("width", "window width", 50, 4000, 1500, 10, unit="HU", ahead=0),
     )
     alt = "An axial slice of the head CT in grey, with a histogram of its HU and the chosen grey window."
-    return Panel(controls, lambda **values: _view(ct, **values), alt=alt)
+    window = left_window(ct.voxels > _AIR)
+    presets = {"bone": {"centre": 800, "width": 800}, "brain": {"centre": 40, "width": 80}}
+    return Panel(controls, lambda **values: _view(ct, window, **values), alt=alt, presets=presets)
 
 
-def _view(ct: Volume, plane: int, centre: float, width: float) -> View:
+def _view(ct: Volume, window: Window, plane: int, centre: float, width: float) -> View:
     """A slice through a grey window, and the histogram of its HU below that window."""
     low, high = centre - width / 2, centre + width / 2
     # the slice
     hu = ct.voxels[plane]
-    canvas = Canvas(SIDE + 360, SIDE)
-    window = Window.whole((0, 0, SIDE, SIDE), hu.shape)
+    canvas = Canvas(WIDTH, HEIGHT)
     canvas.show(windowed(hu, centre, width), window, smooth=True)
     annotate_slice(canvas, window, ct, plane)
     # its histogram, with the window's ends dashed and its centre
-    chart = hu_chart(canvas, (SIDE + 4, 16, 350, 300), count_hu(hu))
+    x, _, width, _ = RIGHT
+    chart = hu_chart(canvas, (x, 20, width, 330), count_hu(hu))
     for value in (low, high):
         chart.upright(canvas, value, VERMILLION, dash=(5, 3))
     chart.upright(canvas, centre, VERMILLION)
-    _draw_grey_scale(canvas, (SIDE + 62, 350, 280, 18), low, high)
+    canvas.text(x + 58, 398, "grey", size=13)
+    _draw_grey_scale(canvas, (x + 58, 406, width - 70, 18), low, high)
     line = f"Slice {plane}: {low:g} HU and below is black, {high:g} HU and above is white."
     return View(canvas.array(), line)
 

@@ -11,45 +11,36 @@ from functools import cached_property, lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ...curves import ChordFrame, GapEnds, Points, arc_length, cubic, spiral
+from ...curves import ChordFrame, GapEnds, Points
 from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
-from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION
+from ...drawing.palette import (
+    BLACK,
+    BLUE,
+    BONE,
+    GREY,
+    ORANGE,
+    SKY,
+    TANGENT,
+    TRUTH,
+    VERMILLION,
+    WHITE,
+    faded,
+    side_letter,
+)
 from ...drawing.pixels import RGB, plain, tinted, windowed
 from ...stages import deformable_model as stage
+from ..classroom import distance_to_curve
 from .controls import Choice, Slider, View
+from .inflation import MAX_STEPS, PRESETS, Inflation, record_inflation
 from .panel import Panel
+from .parts import HEIGHT, WIDTH
 
-PRESETS = ("paper: k as set below", "tangent pressure: k from the ends", "spiral: k along its curve")
-MAX_STEPS = 300
 _K_UNIT = "px per index\N{SUPERSCRIPT TWO}"
-_SIDE, _CHARTS = 512, 340  # px
-_SEEN, _ABOVE = 1.2, 0.75  # of the picture's side, and of the part above the chord, in lengths of the chord
-_SIDES = {"A": (-1, 0), "P": (1, 0), "R": (0, -1), "L": (0, 1)}  # of the patient, as slice (row, col)
-
-
-@dataclass(frozen=True, eq=False)
-class Inflation:
-    """All steps of one balloon.
-
-    Parameters
-    ----------
-    curves : ndarray, shape (T + 1, n, 2)
-        Start curve and the curve after each step, chord px.
-    change : ndarray, shape (T,)
-        ||c(t + dt) - c(t)|| of each step, px.
-    energy : ndarray, shape (T + 1,)
-        Elastic energy w1/2 sum |c'|^2 + w2/2 sum |c''|^2 per snaxel index, px^2.
-    pressure : ndarray, shape (n,)
-        k at each snaxel.
-    converged : bool
-    """
-
-    curves: Points
-    change: NDArray[np.float64]
-    energy: NDArray[np.float64]
-    pressure: NDArray[np.float64]
-    converged: bool
+_HIGH, _CHORD = 300, 195  # px: height of the gap's picture, and where its chord lies
+_SEEN = 1.2  # width of the gap's picture, in lengths of the chord
+_SIDES = ((-1, 0), (1, 0), (0, -1), (0, 1))  # slice (row, col)
+_START, _BALLOON, _GHOST = ORANGE, BLUE, faded(TRUTH)
 
 
 def balloon(
@@ -101,74 +92,12 @@ def balloon(
         "start curve dashed and the balloon at the chosen step; beside it the change of the curve and its elastic "
         "energy at every step."
     )
-    return Panel(controls, lambda step, **values: _view(scene, run(*values.values()), values, step), alt=alt)
-
-
-def record_inflation(
-    length: float,
-    angles: tuple[float, float],
-    preset: str,
-    pressure: float,
-    n: int,
-    tension: float,
-    rigidity: float,
-    dt: float,
-    tol: float,
-) -> Inflation:
-    """Run a balloon and keep all its steps, at most `MAX_STEPS`.
-
-    Parameters
-    ----------
-    length : float
-        Of the gap, px.
-    angles : tuple of float
-        theta0 and theta1, rad.
-    preset : str
-        One of `PRESETS`.
-    pressure : float
-        k, px per index squared, where the preset leaves it open.
-    n : int
-        Snaxels.
-    tension, rigidity, dt, tol : float
-        As for `deformable_model.inflate`.
-
-    Returns
-    -------
-    Inflation
-    """
-    # the stage reports each step; kept here, the slider can show any of them
-    start, slopes, push = _initial(length, angles, preset, pressure, n)
-    curves, change = [start], []
-
-    def keep(step: int, curve: Points, moved: NDArray) -> None:
-        curves.append(curve)
-        change.append(float(moved))
-
-    scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol}
-    result = stage.inflate(start, slopes, pressure=push, max_iter=MAX_STEPS, iter_callback=keep, **scheme)
-    # elastic energy of each curve, by differences per index
-    stack = np.array(curves)
-    energy = (
-        tension * (np.diff(stack, axis=1) ** 2).sum(axis=(1, 2))
-        + rigidity * (np.diff(stack, 2, axis=1) ** 2).sum(axis=(1, 2))
-    ) / 2
-    return Inflation(stack, np.array(change), energy, np.broadcast_to(push, (n,)), bool(result.converged))
-
-
-def _initial(
-    length: float, angles: tuple[float, float], preset: str, pressure: float, n: int
-) -> tuple[Points, Points, NDArray[np.float64]]:
-    """Start curve, shape (n, 2), its end slopes per index, shape (2, 2), and the pressure."""
-    # an Euler spiral, and at each snaxel the k that holds its curvature
-    if preset == PRESETS[2]:
-        start, curvature = spiral(length, *angles, n)
-        along = arc_length(start)[-1]
-        heads = np.array([[np.cos(t), np.sin(t)] for t in (angles[0], angles[1] - np.pi)])
-        return start, heads * along / (n - 1), stage.curvature_pressure(along, curvature)
-    # the paper's cubic: one k by hand, or the one that agrees with the end slopes
-    push = stage.tangent_pressure(length, *angles, n) if preset == PRESETS[1] else np.asarray(pressure)
-    slopes = np.array([[1.0, np.tan(t)] for t in angles]) * length / (n - 1)
-    return cubic(length, *angles, n), slopes, push
+    by_hand = {"preset": PRESETS[0]}
+    presets = {"k = 0.4": by_hand | {"pressure": 0.4}, "k = -0.062": by_hand | {"pressure": -0.062}}
+    presets |= {"twice the snaxels": {"n": 41, "dt": 4.0}}
+    return Panel(
+        controls, lambda step, **values: _view(scene, run(*values.values()), values, step), alt=alt, presets=presets
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -202,7 +131,7 @@ class Scene:
         -------
         float
         """
-        return _SIDE / (_SEEN * self.frame.length)
+        return WIDTH / (_SEEN * self.frame.length)
 
     def place(self, points: ArrayLike) -> Points:
         """Places of the chord frame on the canvas.
@@ -217,8 +146,12 @@ class Scene:
         ndarray, shape (..., 2)
             (x, y), px of the canvas.
         """
-        left_top = np.array([-(_SEEN - 1) / 2, _ABOVE]) * self.frame.length
-        return (np.asarray(points, float) - left_top) * [self.zoom, -self.zoom]
+        return np.asarray(points, float) * [self.zoom, -self.zoom] + self._corner
+
+    @property
+    def _corner(self) -> NDArray[np.float64]:
+        """Where the chord begins on the canvas, (x, y) px."""
+        return np.array([(1 - 1 / _SEEN) / 2 * WIDTH, _CHORD])
 
     @cached_property
     def level(self) -> RGB:
@@ -228,13 +161,12 @@ class Scene:
         -------
         ndarray of uint8, shape (H, W, 3)
         """
-        picture = plain((_SIDE, _SIDE))
+        picture = plain((_HIGH, WIDTH))
         if self.background is None:
             return picture
         # the slice pixel under each pixel of the canvas: `place` backwards
-        y, x = np.mgrid[:_SIDE, :_SIDE] + 0.5
-        chord = np.stack([x, -y], axis=-1) / self.zoom
-        chord += np.array([-(_SEEN - 1) / 2, _ABOVE]) * self.frame.length
+        y, x = np.mgrid[:_HIGH, :WIDTH] + 0.5
+        chord = (np.stack([x, y], axis=-1) - self._corner) / [self.zoom, -self.zoom]
         at = np.rint(self.frame.to_slice(chord)).astype(np.intp)
         seen = ((at >= 0) & (at < self.background.shape[:2])).all(axis=-1)
         picture[seen] = self.background[tuple(at[seen].T)]
@@ -255,78 +187,91 @@ def _view(scene: Scene, run: Inflation, values: dict, step: int) -> View:
     # a shorter run than the slider shows: its last step
     last = len(run.change)
     step = min(step, last)
-    canvas = Canvas(_SIDE + _CHARTS, _SIDE)
-    _draw_gap(canvas, scene, run, step)
+    canvas = Canvas(WIDTH, HEIGHT)
+    canvas.inlay(_draw_gap(scene, run, step), 0, 0)
     _draw_way(canvas, run, step, values["tol"])
+    off = () if values["preset"] == PRESETS[0] else ("pressure",)
+    return View(canvas.array(), _line(scene, run, values, step), limits={"step": last}, off=off)
+
+
+def _line(scene: Scene, run: Inflation, values: dict, step: int) -> str:
+    """What the numbers of a step say: height, error, the ends' angles, the parabola of this k, rest and energy."""
+    last, curve = len(run.change), run.curves[step]
     state = "at rest" if step == last and run.converged else "not at rest"
     change = f"||dc|| = {run.change[step - 1]:.2g} px, " if step else ""
-    k = f"k = {run.pressure.mean():.3g}" + (" on average" if np.ptp(run.pressure) > 1e-12 else "")
-    # what the numbers say: height over the chord, the ends' angles, and the height of the parabola of this k
-    low, apex = run.curves[step][:, 1].min(), run.curves[step][:, 1].max()
-    depth = f" and {-low:.1f} px below" if low < -0.05 else ""
+    # where the curve runs, and how far it is from the truth
+    depth = f" and {-curve[:, 1].min():.1f} px below" if curve[:, 1].min() < -0.05 else ""
+    error = (
+        "" if scene.truth is None else f", at most {distance_to_curve(scene.truth, curve).max():.1f} px off the truth"
+    )
+    heights = f"apex {curve[:, 1].max():.1f} px above{depth} the chord (start {run.curves[0][:, 1].max():.1f}){error}"
     theta0, theta1 = np.degrees(scene.frame.end_angles(scene.ends))
-    chord = f"the chord of {scene.frame.length:.1f} px (theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees)"
-    line = f"Step {step} of {last}, {state}: {change}apex {apex:.1f} px above{depth} {chord}; "
-    parabola = run.pressure.mean() * (values["n"] - 1) ** 2 / 8
-    off = () if values["preset"] == PRESETS[0] else ("pressure",)
-    line += f"energy {run.energy[step]:.1f} px\N{SUPERSCRIPT TWO}; {k}, k N\N{SUPERSCRIPT TWO}/8 = {parabola:.1f} px."
-    return View(canvas.array(), line, limits={"step": last}, off=off)
+    ends = f"L {scene.frame.length:.1f} px, theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees"
+    # what k alone would raise, and what the curve holds
+    k = f"k = {run.pressure.mean():.3g}" + (" on average" if np.ptp(run.pressure) > 1e-12 else "")
+    parabola = f"k N\N{SUPERSCRIPT TWO}/8 = {run.pressure.mean() * (values['n'] - 1) ** 2 / 8:.1f} px"
+    energy = f"{change}energy {run.energy[step]:.1f} px\N{SUPERSCRIPT TWO} (start {run.energy[0]:.1f})"
+    return f"Step {step} of {last}, {state}: {heights}; {ends}; {k}, {parabola}; {energy}."
 
 
-def _draw_gap(canvas: Canvas, scene: Scene, run: Inflation, step: int) -> None:
+def _draw_gap(scene: Scene, run: Inflation, step: int) -> Canvas:
     """The slice with ends, tangents, true bone, start curve and balloon."""
     length, place = scene.frame.length, scene.place
-    inset = Canvas(_SIDE, _SIDE)
+    inset = Canvas(WIDTH, _HIGH)
     inset.place(scene.level, 0, 0)
+    _annotate_gap(inset, scene, step)
     # chord, curves, tangents
     inset.line(place([[0.0, 0.0], [length, 0.0]]), GREY, width=1, dash=(2, 3))
     if scene.truth is not None:
-        inset.line(place(scene.truth), PURPLE, width=5)
-    inset.line(place(run.curves[0]), ORANGE, width=2.5, dash=(8, 5))
-    inset.line(place(run.curves[step]), BLUE, width=3)
-    inset.dots(place(run.curves[step]), BLUE, radius=3.5)
+        inset.line(place(scene.truth), _GHOST, width=8)
+    inset.line(place(run.curves[0]), _START, width=2.5, dash=(8, 5))
+    inset.line(place(run.curves[step]), _BALLOON, width=3)
+    inset.dots(place(run.curves[step]), _BALLOON, radius=3.5)
     for point, tangent in zip(scene.ends.points, scene.ends.tangents, strict=True):
         at, tip = scene.frame.to_chord([point, point + 0.2 * length * tangent])
-        inset.arrow(place(at), place(tip), GREEN)
-        inset.dots(place(at), "#FFFFFF", radius=5, edge=BLACK)
-    _annotate_gap(inset, scene, step)
-    canvas.inlay(inset, 0, 0)
+        inset.arrow(place(at), place(tip), TANGENT)
+        inset.dots(place(at), WHITE, radius=5, edge=BLACK)
+    return inset
 
 
 def _annotate_gap(inset: Canvas, scene: Scene, step: int) -> None:
     """Scale bar, legend and, where a slice lies behind, the sides of the patient."""
     unit = 1.0 if scene.px is None else scene.px
-    bar = round_length(0.25 * _SIDE / scene.zoom * unit)
-    inset.scale_bar(14, _SIDE - 14, bar / unit * scene.zoom, f"{bar:g} {'px' if scene.px is None else 'mm'}")
-    truth = [] if scene.truth is None else [(PURPLE, "line", "true bone")]
-    curves = [(ORANGE, "dash", "start"), (BLUE, "line", f"balloon, step {step}"), (GREEN, "line", "end tangents")]
-    inset.legend(_SIDE - 178, _SIDE - 18 * (3 + len(truth)) - 16, [*curves, *truth])
+    bar = round_length(0.2 * WIDTH / scene.zoom * unit)
+    inset.scale_bar(14, _HIGH - 14, bar / unit * scene.zoom, f"{bar:g} {'px' if scene.px is None else 'mm'}")
+    truth = [] if scene.truth is None else [(_GHOST, "line", "true bone")]
+    # below the chord, where the head is hollow
+    inset.legend(150, _HIGH - 66, [(_START, "dash", "start"), (_BALLOON, "line", f"balloon, step {step}")])
+    inset.legend(320, _HIGH - 66, [(TANGENT, "line", "end tangents"), (GREY, "dash", "chord L")])
+    if truth:
+        inset.legend(470, _HIGH - 66, truth)
     # a letter where its direction leaves the picture
-    sides = {} if scene.background is None else _SIDES
-    for letter, direction in sides.items():
-        along, out = scene.frame.axes @ np.array(direction, float)
-        x, y = np.array([along, -out]) / max(abs(along), abs(out)) * 0.46 * _SIDE + _SIDE / 2
-        inset.text(x, y, letter, size=14, anchor="mm", halo=True)
+    for row, col in () if scene.background is None else _SIDES:
+        along, out = scene.frame.axes @ np.array([row, col], float)
+        half = np.array([WIDTH, _HIGH]) / 2 - 12
+        x, y = np.array([along, -out]) / max(abs(along) / half[0], abs(out) / half[1]) + half + 12
+        inset.text(x, y, side_letter((col, row, 0)), size=14, anchor="mm", halo=True)
 
 
 def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:
     """Change and energy at every step, the present one marked."""
     last = len(run.change)
     steps = np.arange(1, last + 1)
-    # above: the change, on a logarithmic scale, with the tolerance
+    # left: the change, on a logarithmic scale, with the tolerance
     low = max(min(run.change.min(), tol) / 2, 1e-6)
-    changes = Chart((_SIDE, 0, _CHARTS, 256), (0, last + 1), (low, 2 * max(run.change.max(), tol)), log=True)
-    changes.frame(canvas, "change of the curve ||dc|| (px)", "step")
+    top, wide, high = _HIGH + 4, WIDTH // 2, HEIGHT - _HIGH - 4
+    changes = Chart((0, top, wide, high), (0, last + 1), (low, 2 * max(run.change.max(), tol)), log=True)
+    changes.frame(canvas, "||dc||: how far a step moves the curve (px)", "step")
     changes.level(canvas, tol, VERMILLION, dash=(6, 4))
     (x, y), *_ = changes.px([[0, tol]])
     canvas.text(x + 6, y - 5, "tol", size=12, colour=VERMILLION)
     canvas.line(changes.px(np.column_stack([steps, run.change])), BLUE, width=2)
-    # below: the energy
-    low, high = run.energy.min(), run.energy.max()
-    margin = max(0.08 * (high - low), 1e-3 * high)
-    energies = Chart((_SIDE, 256, _CHARTS, 256), (0, last + 1), (low - margin, high + margin))
-    energies.frame(canvas, "elastic energy (px\N{SUPERSCRIPT TWO})", "step")
+    # right: the energy
+    least, most = run.energy.min(), run.energy.max()
+    margin = max(0.08 * (most - least), 1e-3 * most)
+    energies = Chart((wide, top, wide, high), (0, last + 1), (least - margin, most + margin))
+    energies.frame(canvas, "energy of stretching and bending (px\N{SUPERSCRIPT TWO})", "step")
     canvas.line(energies.px(np.column_stack([np.arange(last + 1), run.energy])), SKY, width=2)
     if step:
-        canvas.dots(changes.px([[step, run.change[step - 1]]]), "#FFFFFF", radius=5, edge=BLACK)
-    canvas.dots(energies.px([[step, run.energy[step]]]), "#FFFFFF", radius=5, edge=BLACK)
+        canvas.dots(changes.px([[step, run.change[step - 1]]]), WHITE, radius=5, edge=BLACK)
+    canvas.dots(energies.px([[step, run.energy[step]]]), WHITE, radius=5, edge=BLACK)

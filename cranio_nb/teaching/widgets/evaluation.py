@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
-from ...drawing.palette import SKY, VERMILLION
+from ...drawing.palette import BLACK, SKY, VERMILLION, WHITE
 from ...drawing.shading import Solid, render
 from ...errors import InputRefused
 from ...evaluation import mesh_distances
@@ -20,9 +20,9 @@ from ...evaluation.against_truth import SIDES
 from ...prosthesis import Prosthesis
 from .controls import Choice, Slider, View
 from .panel import Panel
-from .parts import VIEW, coloured, draw_colour_scale, pixel_to_fit, put_view
+from .parts import HEIGHT, LEFT, RIGHT, WIDTH, coloured, draw_colour_scale, pixel_to_fit, put_view
 
-_CHART = 350  # px
+_VIEW = 340  # px: longer side of a map
 
 
 def distances(prosthesis: Prosthesis, truth: Prosthesis) -> Panel:
@@ -61,11 +61,14 @@ class DistanceMap:
         mm at each pixel of the view; nan beside the surface.
     px : float
         mm per pixel.
+    towards : ndarray, shape (3,)
+        From the surface to the viewer, LPS.
     """
 
     distances: NDArray[np.float64]
     picture: NDArray[np.float32]
     px: float
+    towards: NDArray[np.float64]
 
 
 def map_distances(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> DistanceMap:
@@ -92,28 +95,46 @@ def map_distances(prosthesis: Prosthesis, truth: Prosthesis, side: int) -> Dista
     # drawn once with mm in place of colours: the scale can then change without a new rendering
     off = mesh_distances.surface_distance(own.vertices, other)
     towards = own.area_vectors.sum(axis=0)
-    px = pixel_to_fit(own, towards, VIEW - 60)
+    px = pixel_to_fit(own, towards, _VIEW)
     values = np.repeat(off[:, None], 3, axis=1)  # mm in place of colours
     drawn = render([Solid(own, values)], towards, px_mm=px, shaded=False)
-    return DistanceMap(off, np.where(np.isfinite(drawn.depth), drawn.rgb[..., 0], np.nan), px)
+    return DistanceMap(off, np.where(np.isfinite(drawn.depth), drawn.rgb[..., 0], np.nan), px, towards)
+
+
+def draw_distances(canvas: Canvas, known: DistanceMap, top_mm: float, box: tuple[float, float, float, float]) -> None:
+    """Draw a map of distances in colours, the largest one marked.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    known : DistanceMap
+    top_mm : float
+        Upper end of the scale.
+    box : tuple of float
+        x, y, width and height, px.
+    """
+    corner = put_view(canvas, coloured(known.picture, top_mm), known.px, known.towards, box)
+    row, col = np.unravel_index(np.nanargmax(known.picture), known.picture.shape)
+    canvas.dots([(corner[0] + col + 0.5, corner[1] + row + 0.5)], WHITE, radius=4, edge=BLACK)
 
 
 def _view(known: DistanceMap, side: str, top_mm: float, limit_mm: float) -> View:
     """A map of distances with its scale, and their histogram."""
-    canvas = Canvas(VIEW + _CHART, VIEW)
-    put_view(canvas, coloured(known.picture, top_mm), known.px)
+    canvas = Canvas(WIDTH, HEIGHT)
+    draw_distances(canvas, known, top_mm, (0, 0, LEFT, HEIGHT))
 
     # distances above the scale are counted in its last bar
     high = max(top_mm, 0.2)
     counts, edges = np.histogram(np.minimum(known.distances, high), 60, (0, high))
-    chart = Chart((VIEW, 20, _CHART, 300), (0, high), (0, 1.1 * counts.max()))
+    chart = Chart((RIGHT[0], 20, RIGHT[2], 340), (0, high), (0, 1.1 * counts.max()))
     chart.frame(canvas, "nodes", "distance (mm)")
     chart.bars(canvas, edges, counts, SKY)
     if limit_mm <= high:
         chart.upright(canvas, limit_mm, VERMILLION, dash=(6, 4))
     # the scale below the histogram, as wide as its axis
     x, _, width, _ = chart.area
-    draw_colour_scale(canvas, (x, 360), round(width), top_mm)
+    draw_colour_scale(canvas, (x, 420), round(width), top_mm)
+    canvas.legend(x - 8, 470, [(WHITE, "dot", "largest distance seen")])
 
     d = known.distances
     line = f"{side.capitalize()} side: mean {d.mean():.2f} mm, std {d.std():.2f} mm, max {d.max():.2f} mm; "

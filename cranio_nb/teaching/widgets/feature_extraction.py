@@ -15,19 +15,20 @@ from scipy.spatial import HalfspaceIntersection
 
 from ...curves import ChordFrame, GapEnds, Points, SliceFeatures
 from ...drawing.canvas import Canvas
-from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION, rgb_of
+from ...drawing.palette import BLACK, BONE, GREY, INNER, ORANGE, OUTER, SKY, TANGENT, WHITE, rgb_of
 from ...drawing.pixels import RGB, Window, plain, tinted
 from ...stages import feature_extraction as stage
 from ...volume import Volume
+from ..classroom import LessonCase
 from .controls import Slider, View
 from .panel import Panel
-from .parts import SIDE, annotate_slice
+from .parts import HEIGHT, LEFT, RIGHT, WIDTH, annotate_slice, left_window
 
-_INSET = 254  # px of a close-up
+_INSET = (HEIGHT - 8) / 2  # px: height of a close-up
 _AROUND = 22.0  # mm shown around a gap end in a close-up
 
 
-def features(bone: Volume, plane: int, *, opening: Volume | None = None) -> Panel:
+def features(bone: Volume, plane: int, *, opening: Volume | None = None, case: LessonCase | None = None) -> Panel:
     """Boundary, skeleton, hull and end tangents of a slice.
 
     Parameters
@@ -38,15 +39,17 @@ def features(bone: Volume, plane: int, *, opening: Volume | None = None) -> Pane
         Slice to begin with.
     opening : Volume, optional
         Bool mask of the opening on the same grid (``opening.sheet``): says which gap is meant.
+    case : LessonCase, optional
+        Its closed form says which angles are to be expected.
 
     Returns
     -------
     Panel
         Controls ``plane``, ``skip_mm`` and ``reach_mm``.
     """
-    part = Slices(bone, opening)
+    part = Slices(bone, opening, case)
     controls = (
-        Slider("plane", f"slice (0 to {bone.shape[0] - 1})", 0, bone.shape[0] - 1, plane),
+        Slider("plane", f"slice (0 to {bone.shape[0] - 1})", 0, bone.shape[0] - 1, plane, ahead=4),
         Slider("skip_mm", "skip: left out at the cut", 0, 20, 4.5, 0.5, unit="mm"),
         Slider("reach_mm", "reach: fitted after that", 1, 40, 10, 0.5, unit="mm"),
     )
@@ -54,7 +57,9 @@ def features(bone: Volume, plane: int, *, opening: Volume | None = None) -> Pane
         "Bone of a slice with outer boundary, inner boundary, spine and convex hull; two close-ups show the boundary "
         "points that carry the tangent line at each end of the gap, and the tangents."
     )
-    return Panel(controls, lambda **values: _view(part, **values), alt=alt)
+    presets = {"skip 0": {"skip_mm": 0.0}, "reach 6 mm": {"skip_mm": 4.5, "reach_mm": 6.0}}
+    presets |= {"reach 40 mm": {"skip_mm": 4.5, "reach_mm": 40.0}}
+    return Panel(controls, lambda **values: _view(part, **values), alt=alt, presets=presets)
 
 
 class Slices:
@@ -66,15 +71,18 @@ class Slices:
         Bool mask of the skull.
     opening : Volume or None
         Bool mask of the opening on the same grid.
+    case : LessonCase or None
+        What is known of the gaps.
     """
 
-    def __init__(self, bone: Volume, opening: Volume | None) -> None:
+    def __init__(self, bone: Volume, opening: Volume | None, case: LessonCase | None) -> None:
         # 8 px more than the bone of all slices needs: features do not change, pictures are larger
         box = ndimage.find_objects(bone.voxels.any(axis=0).view(np.uint8))
         rows, cols = (slice(max(s.start - 8, 0), s.stop + 8) for s in box[0]) if box else (slice(None), slice(None))
         self.bone = bone.crop((slice(None), rows, cols))
         self.sheet = None if opening is None else opening.crop((slice(None), rows, cols))
-        self.px = float(bone.spacing[1:].mean())
+        self.case, self.px = case, float(bone.spacing[1:].mean())
+        self.window = left_window(self.bone.voxels)
         self.features = lru_cache(maxsize=8)(lambda plane: stage.extract_features(self.bone.voxels[plane]))
         self.background = lru_cache(maxsize=8)(lambda plane: _draw_background(self, plane))
 
@@ -96,16 +104,36 @@ class Slices:
         skip_px, reach_px = skip_mm / self.px, reach_mm / self.px
         return stage.find_gap_ends(self.features(plane), opening, skip_px=skip_px, reach_px=reach_px)
 
+    def expected(self, plane: int, length: float) -> tuple[float, float] | None:
+        """End angles of a gap of the true place that is longer or shorter than the true one, as in a circle.
+
+        Parameters
+        ----------
+        plane : int
+        length : float
+            Of the outer gap, px.
+
+        Returns
+        -------
+        tuple of float or None
+            theta0 and theta1, degrees: their sines are as the lengths. None where the truth is not known.
+        """
+        if self.case is None or not self.case.true_angles(plane):
+            return None
+        curve = self.case.true_curves(plane)[0]
+        sines = np.sin(np.radians(self.case.true_angles(plane)[0])) * length / np.linalg.norm(curve[-1] - curve[0])
+        lean0, lean1 = np.degrees(np.arcsin(np.clip(sines, -1, 1)))
+        return float(lean0), float(180 - lean1)
+
 
 def _view(part: Slices, plane: int, skip_mm: float, reach_mm: float) -> View:
     """A slice with its features, and close-ups of both ends of its gap."""
-    mask = part.bone.voxels[plane]
-    window = Window.whole((0, 0, SIDE, SIDE), mask.shape)
+    mask, window = part.bone.voxels[plane], part.window
     try:
         # what does not depend on skip and reach is drawn once for each slice
         background, rgb, found, outside = part.background(plane)
     except stage.SliceProblem as problem:
-        canvas = Canvas(SIDE + 8 + _INSET, SIDE)
+        canvas = Canvas(WIDTH, HEIGHT)
         canvas.show(tinted(plain(mask.shape), mask, BONE), window)
         return View(canvas.array(), f"Slice {plane}: {problem}")
     canvas = background.copy()
@@ -120,16 +148,21 @@ def _view(part: Slices, plane: int, skip_mm: float, reach_mm: float) -> View:
     # a close-up of each end, about half-way between outer and inner boundary
     for side in (0, 1):
         middle = (pair[0].points[side] + pair[1].points[side]) / 2
-        _close_up(canvas, (SIDE + 8, side * (SIDE - _INSET), _INSET, _INSET), rgb, middle, fits, part.px, side)
-    # how many points carry each tangent, and how wide the gap is
+        box = (RIGHT[0], side * (HEIGHT - _INSET), RIGHT[2], _INSET)
+        _close_up(canvas, box, rgb, middle, fits, part.px, side)
+    line = f"Slice {plane}, skip {skip_mm:g} mm, reach {reach_mm:g} mm: {_angles(part, plane, found, pair[0])}; "
     counts = " and ".join(str(sum(len(points) for points in fit.used)) for fit in fits)
-    width = np.hypot(*np.diff(pair[0].points, axis=0)[0]) * part.px
-    line = f"Slice {plane}, skip {skip_mm:g} mm, reach {reach_mm:g} mm: {counts} boundary points carry the outer and "
-    line += f"inner tangents; the outer ends are {width:.1f} mm apart, "
+    return View(canvas.array(), line + f"{counts} boundary points carry the outer and inner tangents.")
+
+
+def _angles(part: Slices, plane: int, found: SliceFeatures, outer: GapEnds) -> str:
+    """Length and end angles of the outer gap, with those to expect where the truth is known."""
     # the middle of the spine lies on the inner side of the gap
-    frame = ChordFrame.of(pair[0], np.concatenate(found.skeleton).mean(axis=0))
-    theta0, theta1 = np.degrees(frame.end_angles(pair[0]))
-    return View(canvas.array(), line + f"theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees.")
+    frame = ChordFrame.of(outer, np.concatenate(found.skeleton).mean(axis=0))
+    wanted = part.expected(plane, frame.length)
+    told = ["", ""] if wanted is None else [f" (expect {angle:.1f})" for angle in wanted]
+    theta0, theta1 = (f"{a:.1f}{w}" for a, w in zip(np.degrees(frame.end_angles(outer)), told, strict=True))
+    return f"the outer ends are {frame.length * part.px:.1f} mm apart, theta0 {theta0}, theta1 {theta1} degrees"
 
 
 def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatures, NDArray[np.bool_]]:
@@ -137,7 +170,7 @@ def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatur
     # the slice with its boundaries, then spine and hull as lines over it
     found, mask = part.features(plane), part.bone.voxels[plane]
     outside = ~found.in_hull
-    canvas, window = Canvas(SIDE + 8 + _INSET, SIDE), Window.whole((0, 0, SIDE, SIDE), mask.shape)
+    canvas, window = Canvas(WIDTH, HEIGHT), part.window
     rgb = _slice_picture(mask, found)
     canvas.show(rgb, window)
     _draw_lines(canvas, window, found)
@@ -146,8 +179,8 @@ def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatur
     outer_name, inner_name = "outer boundary, B \N{MINUS SIGN} S", "inner boundary, B \N{INTERSECTION} S"
     bounds = [(SKY, "area", outer_name), (ORANGE, "area", inner_name)]
     lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S")]
-    used = [(BLUE, "dot", "used, outer"), (VERMILLION, "dot", "used, inner"), (GREEN, "line", "tangents")]
-    canvas.legend(SIDE / 2 - 90, SIDE / 2 - 66, [*bounds, *lines, *used])
+    used = [(OUTER, "dot", "used, outer"), (INNER, "dot", "used, inner"), (TANGENT, "line", "tangents")]
+    canvas.legend(LEFT / 2 - 90, HEIGHT / 2 - 66, [*bounds, *lines, *used])
     return canvas, rgb, found, outside
 
 
@@ -171,7 +204,7 @@ def _fit(found: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, *, ski
     for point in ends.points:
         run = min(runs, key=lambda r: np.hypot(*(r[0] - point)))
         used.append(boundary[stage.select_tangent_points(boundary, run, skip_px=skip_px, reach_px=reach_px)])
-    return Fit(ends, tuple(used), BLUE if is_outer else VERMILLION)
+    return Fit(ends, tuple(used), OUTER if is_outer else INNER)
 
 
 def _slice_picture(mask: NDArray[np.bool_], found: SliceFeatures) -> RGB:
@@ -207,8 +240,8 @@ def _draw_ends(canvas: Canvas, window: Window, fits: list[Fit], px: float, size:
             middle = points.mean(axis=0)
             along = (points - middle) @ tangent
             canvas.line(window.px([middle + along.min() * tangent, middle + along.max() * tangent]), BLACK, width=1)
-            canvas.arrow(window.px(end), window.px(end + 12.0 / px * tangent), GREEN, width=1.2 + 0.8 * size)
-            canvas.dots(window.px(end), "#FFFFFF", radius=2.0 + 1.5 * size, edge=BLACK)
+            canvas.arrow(window.px(end), window.px(end + 12.0 / px * tangent), TANGENT, width=1.2 + 0.8 * size)
+            canvas.dots(window.px(end), WHITE, radius=2.0 + 1.5 * size, edge=BLACK)
 
 
 def _close_up(

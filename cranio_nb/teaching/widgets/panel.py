@@ -1,6 +1,6 @@
 """Controls as plain values and a function from them to a picture -> something a notebook shows.
 
-In both modes a panel makes the same picture; `live` adds widgets that move it.
+In both modes a panel makes the same picture; `live` adds controls in the browser that move it.
 """
 
 from __future__ import annotations
@@ -51,6 +51,7 @@ class Panel:
         self.slow = slow
         self._draw = draw
         self.view = self.first = draw(**self.values)
+        self.values |= {name: min(self.values[name], top) for name, top in self._tops.items()}
 
     def picture(self, **values: Any) -> View:
         """The picture of a setting, whatever the panel shows now; nothing is moved.
@@ -94,12 +95,9 @@ class Panel:
             if name not in self.controls:
                 known = ", ".join(self.controls)
                 raise InputRefused("UnknownControl", f"This panel has no control {name!r}.", f"It has: {known}.")
-        values = {name: self.controls[name].taken(value) for name, value in values.items()}
-        # with a front end the widgets move too, without one only the values
+        self.update(values)
         if mode() == "widget":
-            self.front.set(values)
-        else:
-            self.update(values)
+            self.front.show()
         return self
 
     def update(self, values: dict[str, Any]) -> View:
@@ -114,13 +112,23 @@ class Panel:
         -------
         View
         """
-        self.values = self.values | values
-        self.view = self.picture(**self.values)
+        asked = self.values | {name: self.controls[name].taken(value) for name, value in values.items()}
+        at_end = {name for name, top in self._tops.items() if asked[name] == top}
+        self.values, self.view = asked, self.picture(**asked)
+        # a slider at its end stays at its end where the picture moves that end, and none stands beyond it
+        ends = {name: top if name in at_end else min(asked[name], top) for name, top in self._tops.items()}
+        if asked | ends != asked:
+            self.values, self.view = asked | ends, self.picture(**asked | ends)
         return self.view
+
+    @property
+    def _tops(self) -> dict[str, float]:
+        """Upper ends of sliders that the picture of now has moved."""
+        return self.view.limits or {}
 
     @cached_property
     def front(self) -> Any:
-        """The controls as widgets.
+        """The panel in a browser.
 
         Returns
         -------
@@ -133,5 +141,5 @@ class Panel:
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> Bundle:
         data, metadata = bundle(encoded_png(self.view.rgb), self.alt, self.view.line)
         if mode() == "widget":
-            data |= self.front.box._repr_mimebundle_()
+            data |= self.front.widget._repr_mimebundle_()[0]
         return data, metadata

@@ -17,29 +17,39 @@ from ...drawing.shading import view_axes
 from ...mesh import Mesh
 from ...volume import Volume
 
-SIDE = 512  # px of a slice's picture
-VIEW = 440  # px of a shaded view
+WIDTH, HEIGHT = 660, 540
+"""px of every panel's picture: with controls beside it, whole on a screen of 1366 x 768."""
+LEFT = 420
+"""px of its left part, which shows a slice or a surface."""
+RIGHT = (LEFT + 4, 0, WIDTH - LEFT - 4, HEIGHT)
+"""Box of its right part: x, y, width, height, px."""
 HU_RANGE = (-1100.0, 2500.0)
 """HU that histograms show."""
 
 _COLOURS = (colour_scale(1.0).to_rgba(np.linspace(0, 1, 256), bytes=True)[:, :3]).astype(np.uint8)
-_LETTERS = (((0.5, 0.035), "A"), ((0.5, 0.965), "P"), ((0.03, 0.5), "R"), ((0.97, 0.5), "L"))  # place (x, y), side
+_MARGIN = 0.06  # around what a window shows, of its larger extent: room for letters
 
 Histogram = tuple[NDArray, NDArray]
 
 
-def draw_sides(canvas: Canvas, box: tuple[float, float, float, float]) -> None:
-    """Write the sides of the patient, A, P, R and L, at the edges of a picture in the axial plane.
+def left_window(shown: NDArray[np.bool_], width: int = LEFT) -> Window:
+    """A window on the left part of a panel that holds what is shown of any slice, so that nothing jumps.
 
     Parameters
     ----------
-    canvas : Canvas
-    box : tuple of float
-        x, y, width and height of the picture, px.
+    shown : ndarray of bool, shape (P, R, C)
+        All of it where nothing is True.
+    width : int
+        px.
+
+    Returns
+    -------
+    Window
     """
-    x, y, width, height = box
-    for at, letter in _LETTERS:
-        canvas.text(x + at[0] * width, y + at[1] * height, letter, size=14, anchor="mm", halo=True)
+    seen = shown.any(axis=0) if shown.any() else np.ones(shown.shape[1:], bool)
+    low, high = np.argwhere(seen).min(axis=0), np.argwhere(seen).max(axis=0)
+    margin = _MARGIN * (high - low).max() + 1
+    return Window.around((0, 0, width, HEIGHT), low - margin, high + margin)
 
 
 def annotate_slice(canvas: Canvas, window: Window, grid: Volume, plane: int) -> None:
@@ -58,7 +68,7 @@ def annotate_slice(canvas: Canvas, window: Window, grid: Volume, plane: int) -> 
     px = float(grid.spacing[2])
     mm = round_length(0.2 * width / window.zoom * px)
     canvas.scale_bar(x + 14, y + height - 14, mm / px * window.zoom, f"{mm:g} mm")
-    draw_sides(canvas, window.box)
+    canvas.sides(window.box)
     canvas.text(x + width - 12, y + height - 14, f"slice {plane}", anchor="rs", halo=True)
 
 
@@ -177,19 +187,31 @@ def pixel_to_fit(mesh: Mesh, towards: ArrayLike, size: int) -> float:
     return float(np.ptp(flat, axis=0).max() / size)
 
 
-def put_view(canvas: Canvas, rgb: RGB, px: float) -> None:
-    """Put a rendered view in the middle of the left side of a canvas, with its scale bar.
+def put_view(
+    canvas: Canvas, rgb: RGB, px: float, towards: ArrayLike, box: tuple[float, float, float, float]
+) -> tuple[int, int]:
+    """Put a rendered view in the middle of a box, with its scale bar and the sides of the patient.
 
     Parameters
     ----------
     canvas : Canvas
     rgb : ndarray of uint8, shape (H, W, 3)
-        At most `VIEW` px wide and high.
     px : float
         Size of its pixels, mm.
+    towards : array_like, shape (3,)
+        From what is seen to the viewer, LPS.
+    box : tuple of float
+        x, y, width and height, px; at least as large as the view.
+
+    Returns
+    -------
+    tuple of int
+        x and y of the view's upper left corner.
     """
-    height, width = rgb.shape[:2]
-    canvas.place(rgb, (VIEW - width) // 2, (VIEW - 36 - height) // 2 + 4)
-    length = round_length(0.3 * VIEW * px)
-    canvas.scale_bar(14, VIEW - 12, length / px, f"{length:g} mm")
-    canvas.line([(VIEW, 8), (VIEW, VIEW - 8)], "#DADADA", width=1)
+    x, y, width, height = box
+    corner = int(x + (width - rgb.shape[1]) // 2), int(y + (height - rgb.shape[0]) // 2)
+    canvas.place(rgb, *corner)
+    length = round_length(0.3 * width * px)
+    canvas.scale_bar(x + 14, y + height - 14, length / px, f"{length:g} mm")
+    canvas.sides(box, *view_axes(towards)[:2])
+    return corner

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
-from ...drawing.palette import BLACK, BLUE, BONE, GREEN, GREY, ORANGE, SKY, VERMILLION
+from ...drawing.palette import BLACK, BONE, GREEN, GREY, INNER, ORANGE, OUTER, PATCH, WHITE
 from ...drawing.pixels import Window, plain, tinted
 from ...methods.design import design
 from ...methods.slicewise.slices import SliceResult
@@ -22,11 +22,11 @@ from ...opening import Opening
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
 from .panel import Panel
-from .parts import SIDE, annotate_slice
+from .parts import HEIGHT, LEFT, RIGHT, WIDTH, annotate_slice
 
 PRESSURES = ("from the end tangents", "the paper's constant k")
 _WORDS = {
-    "balloon": ("bridged by its own balloons", SKY),
+    "balloon": ("bridged by its own balloons", PATCH),
     "hull": ("partial loss: hull minus bone", GREEN),
     "carried": ("carried from its neighbours", ORANGE),
     "skipped": ("left empty", GREY),
@@ -75,7 +75,7 @@ class Stack:
         rows, cols = np.nonzero(self.patches.any(axis=0))
         low, high = np.array([rows.min(), cols.min()]), np.array([rows.max(), cols.max()])
         margin = 0.25 * (high - low).max() + 4
-        return Window.around((0, 0, SIDE, SIDE), low - margin, high + margin)
+        return Window.around((0, 0, LEFT, HEIGHT), low - margin, high + margin)
 
 
 def patch(bone: Volume, opening: Opening) -> Panel:
@@ -133,26 +133,27 @@ def _view(stack: Stack, plane: int, curves: bool) -> View:
     at = plane - stack.first
     result, mask = stack.slices[at], stack.bone.voxels[plane]
     words, colour = _WORDS[result.status]
-    canvas = Canvas(SIDE + 350, SIDE)
+    canvas = Canvas(WIDTH, HEIGHT)
     window = stack.window
     # the slice: bone, patch, curves
-    inset = Canvas(SIDE, SIDE)
-    colour = colour if result.status != "skipped" else SKY
+    inset = Canvas(LEFT, HEIGHT)
+    colour = colour if result.status != "skipped" else PATCH
     inset.show(tinted(tinted(plain(mask.shape), mask, BONE), stack.patches[at], colour), window)
     if curves:
-        for curve, line, dash in zip(result.curves, (BLUE, VERMILLION), (None, (8, 4)), strict=False):
+        for curve, line, dash in zip(result.curves, (OUTER, INNER), (None, (8, 4)), strict=False):
             inset.line(window.px(curve), line, width=2.5, dash=dash)
     annotate_slice(inset, window, stack.bone, plane)
-    inset.legend(SIDE - 140, 6, [(BLUE, "line", "outer curve"), (VERMILLION, "dash", "inner curve")])
+    inset.legend(6, 26, [(BONE, "area", "bone"), (OUTER, "line", "outer curve"), (INNER, "dash", "inner curve")])
     canvas.inlay(inset, 0, 0)
     # beside it the areas of all slices
     _draw_areas(canvas, stack, at)
     found = sorted({s.status for s in stack.slices}, key=list(_WORDS).index)
-    canvas.legend(SIDE + 58, 330, [(_WORDS[s][1], "area", _WORDS[s][0]) for s in found])
+    canvas.legend(RIGHT[0] + 6, 350, [(_WORDS[s][1], "area", _WORDS[s][0]) for s in found])
     line = f"Slice {plane}, {words}: patch of {stack.areas[at]:.0f} mm\N{SUPERSCRIPT TWO}"
     if result.inflation is not None:
         theta0, theta1 = result.inflation.theta0_deg[0], result.inflation.theta1_deg[0]
         line += f", outer theta0 {theta0:.0f}, theta1 {theta1:.0f} degrees"
+        line += " (beyond 180: it would arrive from inside the head)" if max(theta0, theta1) > 180 else ""
     return View(canvas.array(), line + (f" ({result.reason})." if result.reason else "."))
 
 
@@ -161,11 +162,11 @@ def _draw_areas(canvas: Canvas, stack: Stack, at: int) -> None:
     # a bar for each slice in the colour of its status, the shown one marked
     n = len(stack.slices)
     chart = Chart(
-        (SIDE + 4, 10, 340, 300), (stack.first - 0.5, stack.first + n - 0.5), (0, 1.1 * stack.areas.max() + 1)
+        (RIGHT[0], 10, RIGHT[2], 320), (stack.first - 0.5, stack.first + n - 0.5), (0, 1.1 * stack.areas.max() + 1)
     )
     chart.frame(canvas, "area of the patch (mm\N{SUPERSCRIPT TWO})", "slice")
     for i, (result, area) in enumerate(zip(stack.slices, stack.areas, strict=True)):
         edges = stack.first + i + np.array([-0.42, 0.42])
         chart.bars(canvas, edges, np.array([area]), _WORDS[result.status][1])
     (x, y), *_ = chart.px([[stack.first + at, stack.areas[at]]])
-    canvas.dots([(x, y)], "#FFFFFF", radius=4.5, edge=BLACK)
+    canvas.dots([(x, y)], WHITE, radius=4.5, edge=BLACK)

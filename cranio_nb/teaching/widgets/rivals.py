@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...drawing.canvas import Canvas
-from ...drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY, VERMILLION, rgb_shares
+from ...drawing.palette import BLACK, BLUE, BONE, ORANGE, PATCH, SKULL, SKY, TRUTH, rgb_shares
 from ...drawing.pixels import Window, plain, tinted
 from ...drawing.shading import Solid, render, view_axes
 from ...evaluation import mesh_distances
@@ -28,9 +28,19 @@ from ...vault.symmetry import SymmetryPlane
 from ...volume import Volume
 from .controls import Slider, View
 from .panel import Panel
-from .parts import annotate_slice, coloured, draw_colour_scale, draw_sides
+from .parts import (
+    HEIGHT,
+    LEFT,
+    RIGHT,
+    WIDTH,
+    annotate_slice,
+    coloured,
+    draw_colour_scale,
+    left_window,
+    put_view,
+)
 
-_SIDE = 440  # px
+_HALF = WIDTH // 2  # px
 _TOP = 4.0  # mm: upper end of the scale of residuals
 _FREE = 1.0  # mm that `render` leaves free around what it draws
 
@@ -78,7 +88,8 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
     lost = np.zeros(bone.shape[1:], bool) if truth is None or truth.patch is None else truth.patch.voxels[plane]
     alt = "The hole from outside with guiding points, rim and fill; beside it a slice with the fill and what it misses."
     controls = (Slider("n", "guiding points", 3, 24, 12),)
-    return Panel(controls, lambda n: _guides_view(bone, plane, made(n), lost), alt=alt, slow=True)
+    presets = {f"{n} points": {"n": n} for n in (3, 4, 24)}
+    return Panel(controls, lambda n: _guides_view(bone, plane, made(n), lost), alt=alt, presets=presets, slow=True)
 
 
 def _flat_fill(
@@ -98,44 +109,51 @@ def _from_outside(made: you.Filling, towards: NDArray[np.float64]) -> Canvas:
     """A filling with its rim and guides, shaded."""
     # extent of skull and fill across the line of sight: it sets the size of a pixel
     right_down = view_axes(towards)[:2].T
-    meshes = (made.skull, BONE), (made.outer.mesh, SKY)
+    meshes = (made.skull, SKULL), (made.outer.mesh, PATCH)
     flat = np.concatenate([mesh.vertices for mesh, _ in meshes]) @ right_down
-    low, px = flat.min(axis=0) - _FREE, float(np.ptp(flat, axis=0).max() / (_SIDE - 30))
-    # both surfaces shaded, in the middle of the square
+    low, px = flat.min(axis=0) - _FREE, float(np.ptp(flat, axis=0).max() / (LEFT - 40))
+    # both surfaces shaded
     solids = [Solid(mesh, rgb_shares(colour)) for mesh, colour in meshes]
     rgb = (255 * render(solids, towards, px_mm=px).rgb).astype(np.uint8)
-    corner = (_SIDE - np.array(rgb.shape[1::-1])) // 2
-    canvas = Canvas(_SIDE, _SIDE)
-    canvas.place(rgb, *corner)
+    canvas = Canvas(LEFT, HEIGHT)
+    corner = put_view(canvas, rgb, px, towards, (0, 30, LEFT, HEIGHT - 30))
     # the same projection for rim and guides, drawn over the surfaces
     rim, guides = ((points @ right_down - low) / px + corner for points in (made.outer_rim.points, made.guides))
     canvas.line(np.concatenate([rim, rim[:1]]), BLUE, width=2.5)
     canvas.dots(guides, ORANGE, radius=5, edge=BLACK)
-    canvas.legend(6, 6, [(ORANGE, "dot", "guiding point"), (BLUE, "line", "rim"), (SKY, "area", "fill")])
+    canvas.legend(
+        6,
+        6,
+        [
+            (ORANGE, "dot", "guiding point"),
+            (BLUE, "line", "rim"),
+            (PATCH, "area", "fill"),
+            (TRUTH, "area", "missed bone"),
+        ],
+    )
     return canvas
 
 
 def _guides_view(bone: Volume, plane: int, fill: FlatFill, lost: NDArray[np.bool_]) -> View:
     """The fill from outside, and one slice of it over the bone that is missing."""
-    canvas = Canvas(2 * _SIDE, _SIDE)
+    canvas = Canvas(WIDTH, HEIGHT)
     canvas.inlay(fill.picture, 0, 0)
     # the slice around fill and missing bone; what of the missing bone the fill covers is in its colour
-    inset = Canvas(_SIDE, _SIDE)
+    _, _, width, height = RIGHT
+    inset = Canvas(width, height)
     index = np.argwhere(fill.patch | lost) if (fill.patch | lost).any() else np.argwhere(bone.voxels[plane])
-    window = Window.around((0, 0, _SIDE, _SIDE), index.min(axis=0) - 12, index.max(axis=0) + 12)
+    window = Window.around((0, 0, width, height), index.min(axis=0) - 12, index.max(axis=0) + 12)
     rgb = plain(bone.shape[1:])
-    for mask, colour in ((bone.voxels[plane], BONE), (lost, VERMILLION), (fill.patch, SKY)):
+    for mask, colour in ((bone.voxels[plane], BONE), (lost, TRUTH), (fill.patch, PATCH)):
         rgb = tinted(rgb, mask, colour)
     inset.show(rgb, window)
     annotate_slice(inset, window, bone, plane)
-    inset.legend(_SIDE - 150, 6, [(SKY, "area", "fill"), (VERMILLION, "area", "missed bone")])
-    canvas.inlay(inset, _SIDE, 0)
+    canvas.inlay(inset, *RIGHT[:2])
     # length of the closed rim, area of the membrane across it
     rim = fill.made.outer_rim.points
     length = np.linalg.norm(rim - np.roll(rim, 1, axis=0), axis=1).sum()
-    line = (
-        f"{len(fill.made.guides)} guiding points: rim {length:.0f} mm, fill {fill.made.outer.areas[-1] / 100:.1f} cm2"
-    )
+    area = f"{fill.made.outer.areas[-1] / 100:.1f} cm\N{SUPERSCRIPT TWO}"
+    line = f"{len(fill.made.guides)} guiding points: rim {length:.0f} mm, fill {area}"
     if len(fill.off):
         line += f"; {fill.off.mean():.2f} mm from the true surface on average, {fill.off.max():.2f} mm at most"
     return View(canvas.array(), line + ".")
@@ -161,13 +179,20 @@ def symmetry_plane(bone: Volume, opening: Opening) -> Panel:
     surface = measure_outer_surface(bone, opening.head_centre, opening.head_axes)
     plane = sum(opening.planes) // 2
     controls = (
-        Slider("turn_deg", "turned about the upright axis", -10.0, 10.0, 0.0, 0.5, unit="degrees"),
-        Slider("lean_deg", "leaning to a side", -10.0, 10.0, 0.0, 0.5, unit="degrees"),
-        Slider("shift_mm", "shifted to the left", -10.0, 10.0, 0.0, 0.5, unit="mm"),
+        Slider("turn_deg", "turned about the upright axis", -10.0, 10.0, 0.0, 0.5, unit="degrees", ahead=5),
+        Slider("lean_deg", "leaning to a side", -10.0, 10.0, 0.0, 0.5, unit="degrees", ahead=5),
+        Slider("shift_mm", "shifted to the left", -10.0, 10.0, 0.0, 0.5, unit="mm", ahead=5),
     )
     alt = "A slice with the mirror image over the bone and the plane; beside it the residual over the vault."
+    window = left_window(bone.voxels, _HALF)
+    still = {control.name: 0.0 for control in controls}
+    moves = {"turn 3\N{DEGREE SIGN}": {"turn_deg": 3.0}, "lean 3\N{DEGREE SIGN}": {"lean_deg": 3.0}}
+    moves |= {"shift 1 mm": {"shift_mm": 1.0}}
     return Panel(
-        controls, lambda **move: _mirror_view(bone, surface, move_plane(found, surface, **move), plane, move), alt=alt
+        controls,
+        lambda **move: _mirror_view(bone, window, surface, move_plane(found, surface, **move), plane, move),
+        alt=alt,
+        presets={name: still | move for name, move in moves.items()},
     )
 
 
@@ -198,20 +223,25 @@ def move_plane(
 
 
 def _mirror_view(
-    bone: Volume, surface: OuterSurface, mirror: SymmetryPlane, plane: int, move: dict[str, float]
+    bone: Volume,
+    window: Window,
+    surface: OuterSurface,
+    mirror: SymmetryPlane,
+    plane: int,
+    move: dict[str, float],
 ) -> View:
     """Bone and mirror image in a slice, and the residual over the vault."""
-    canvas = Canvas(2 * _SIDE, _SIDE)
-    canvas.inlay(_mirrored_slice(bone, mirror, plane), 0, 0)
+    canvas = Canvas(WIDTH, HEIGHT)
+    canvas.inlay(_mirrored_slice(bone, window, mirror, plane), 0, 0)
     # residuals of all rays as a map seen from above, scaled to the square
     residual = np.abs(symmetry.mirror_residuals(surface, mirror)).astype(np.float32)
-    side = _SIDE - 90
+    side = _HALF - 40
     rows = np.linspace(0, len(residual) - 1, side).round().astype(int)
-    left, top = _SIDE + 45, 34
+    left, top = _HALF + 20, 80
     canvas.place(coloured(residual[np.ix_(rows, rows)], _TOP), left, top)
-    canvas.text(left, 22, "the vault from above: residual (mm)")
-    draw_sides(canvas, (left, top, side, side))
-    draw_colour_scale(canvas, (left, _SIDE - 46), side, _TOP)
+    canvas.text(left, top - 14, "the vault from above: residual (mm)")
+    canvas.sides((left, top, side, side))
+    draw_colour_scale(canvas, (left, top + side + 16), side, _TOP)
     known = residual[np.isfinite(residual)]
     line = "Turned by {turn_deg:g} and leaning by {lean_deg:g} degrees, shifted by {shift_mm:g} mm: ".format(**move)
     if not len(known):
@@ -219,22 +249,38 @@ def _mirror_view(
     return View(canvas.array(), line + f"residual {np.median(known):.2f} mm (median), {known.mean():.2f} mm (mean).")
 
 
-def _mirrored_slice(bone: Volume, mirror: SymmetryPlane, plane: int) -> Canvas:
+def _mirrored_slice(bone: Volume, window: Window, mirror: SymmetryPlane, plane: int) -> Canvas:
     """A slice: bone, its mirror image, what both share, and the plane."""
     # the mirror image of the slice: each pixel shows the voxel that its mirrored place falls on
     mask = bone.voxels[plane]
-    pixels = np.stack([np.full(mask.shape, plane), *np.indices(mask.shape)], axis=-1)
-    world = bone.to_world(pixels.reshape(-1, 3))
-    image = bone.at(mirror.mirror(world), outside=False).reshape(mask.shape)
-    canvas = Canvas(_SIDE, _SIDE)
-    window = Window.whole((0, 0, _SIDE, _SIDE), mask.shape)
+    image = bone.at_index(_over(mask.shape, _mirrored_index(bone, mirror, plane)), outside=False)
+    canvas = Canvas(_HALF, HEIGHT)
     canvas.show(tinted(tinted(tinted(plain(mask.shape), image, SKY), mask, ORANGE), mask & image, BONE), window)
     # the plane, where the side changes along a row
-    side = mirror.distance(world).reshape(mask.shape) > 0
+    side = _over(mask.shape, mirror.distance(bone.to_world(_corners(plane)))) > 0
     rows = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
     if len(rows):
         canvas.line(window.px(np.column_stack([rows, side[rows].argmax(axis=1) - 0.5])), BLACK, width=1.5, dash=(8, 5))
     annotate_slice(canvas, window, bone, plane)
     entries = [(BONE, "area", "both"), (ORANGE, "area", "bone"), (SKY, "area", "mirror")]
-    canvas.legend(110, 170, [*entries, (BLACK, "dash", "plane")])  # within the ring of bone
+    canvas.legend(_HALF / 2 - 46, HEIGHT / 2 - 40, [*entries, (BLACK, "dash", "plane")])  # within the ring of bone
     return canvas
+
+
+def _corners(plane: int) -> NDArray[np.float64]:
+    """The first voxel of a slice and its neighbours in the next row and the next column, shape (3, 3)."""
+    return np.array([[plane, 0, 0], [plane, 1, 0], [plane, 0, 1]], float)
+
+
+def _mirrored_index(bone: Volume, mirror: SymmetryPlane, plane: int) -> NDArray[np.float64]:
+    """Voxel indices of the mirrored places of `_corners`, shape (3, 3)."""
+    return bone.to_voxel(mirror.mirror(bone.to_world(_corners(plane))))
+
+
+def _over(shape: tuple[int, ...], corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """An affine function of row and column at every pixel of a slice, from its values at `_corners`."""
+    first, row, col = corners
+    rows, cols = np.arange(shape[0])[:, None], np.arange(shape[1])
+    if first.ndim:
+        rows, cols = rows[..., None], cols[:, None]
+    return np.asarray(first + rows * (row - first) + cols * (col - first))

@@ -16,9 +16,10 @@ from ...stages import segmentation as stage
 from ...volume import Volume
 from .controls import Slider, Switch, View
 from .panel import Panel
-from .parts import SIDE, Histogram, annotate_slice, count_hu, hu_chart
+from .parts import HEIGHT, RIGHT, WIDTH, Histogram, annotate_slice, count_hu, hu_chart, left_window
 
 _PART_COLOURS = (BONE, ORANGE, SKY, PURPLE, YELLOW, VERMILLION)  # of the pieces, the largest first
+_SHOWN = -200  # HU: the lowest threshold; the window holds what it leaves
 _MOST_PARTS = 60  # coloured; the rest are specks
 
 
@@ -38,17 +39,27 @@ def threshold(ct: Volume) -> Panel:
     # the histogram is of every fourth voxel: it does not change with the controls
     last = ct.shape[0] - 1
     controls = (
-        Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last)),
-        Slider("threshold_hu", "threshold: bone from", -200, 1500, stage.BONE_HU, 5, unit="HU"),
-        Slider("max_hole_mm2", "fill holes up to", 0, 200, 60, 5, unit="mm\N{SUPERSCRIPT TWO}"),
-        Switch("parts", "colour the pieces", False),
+        Slider("plane", f"slice (0 to {last})", 0, last, round(0.6 * last), ahead=3),
+        Slider("threshold_hu", "threshold: bone from", _SHOWN, 1500, stage.BONE_HU, 5, unit="HU"),
+        Slider("max_hole_mm2", "fill holes up to", 0, 200, 60, 5, unit="mm\N{SUPERSCRIPT TWO}", ahead=2),
+        Switch("parts", "colour the pieces", False, expert=True),
     )
     histogram = count_hu(ct.voxels[:, ::2, ::2])
     alt = "An axial slice with what the threshold takes for bone, filled holes in green, and the histogram of the CT."
-    return Panel(controls, lambda **values: _view(ct, histogram, **values), alt=alt)
+    window = left_window(ct.voxels > _SHOWN)
+    presets = {f"{level} HU": {"threshold_hu": level} for level in (400, 625, 800)}
+    return Panel(controls, lambda **values: _view(ct, window, histogram, **values), alt=alt, presets=presets)
 
 
-def _view(ct: Volume, histogram: Histogram, plane: int, threshold_hu: float, max_hole_mm2: float, parts: bool) -> View:
+def _view(
+    ct: Volume,
+    window: Window,
+    histogram: Histogram,
+    plane: int,
+    threshold_hu: float,
+    max_hole_mm2: float,
+    parts: bool,
+) -> View:
     """A slice with its bone, filled holes and pieces, and the histogram with the threshold."""
     # the slice by itself, as the stage would take it: threshold, then small holes
     area = float(np.prod(ct.spacing[1:]))
@@ -56,13 +67,12 @@ def _view(ct: Volume, histogram: Histogram, plane: int, threshold_hu: float, max
     bone = stage.fill_holes(raw[None], max_hole_px=max_hole_mm2 / area)[0]
     labels, n_parts = ndimage.label(bone, np.ones((3, 3)))
 
-    canvas = Canvas(SIDE + 360, SIDE)
-    window = Window.whole((0, 0, SIDE, SIDE), raw.shape)
+    canvas = Canvas(WIDTH, HEIGHT)
     canvas.show(_bone_picture(ct.voxels[plane], raw, bone, labels if parts else None), window)
     annotate_slice(canvas, window, ct, plane)
     _draw_threshold(canvas, histogram, threshold_hu)
     entries = [(BONE, "area", "bone"), (GREEN, "area", "holes filled")]
-    canvas.legend(SIDE + 62, 350, [*entries, (ORANGE, "area", "other pieces")] if parts else entries)
+    canvas.legend(RIGHT[0] + 50, 370, [*entries, (ORANGE, "area", "other pieces")] if parts else entries)
 
     # areas by counting pixels
     filled = (np.count_nonzero(bone) - np.count_nonzero(raw)) * area
@@ -76,7 +86,7 @@ def _view(ct: Volume, histogram: Histogram, plane: int, threshold_hu: float, max
 
 def _draw_threshold(canvas: Canvas, histogram: Histogram, threshold_hu: float) -> None:
     """The histogram of the CT with the threshold."""
-    chart = hu_chart(canvas, (SIDE + 4, 16, 350, 300), histogram)
+    chart = hu_chart(canvas, (RIGHT[0], 20, RIGHT[2], 330), histogram)
     chart.upright(canvas, threshold_hu, VERMILLION, width=3)
     (x, y), *_ = chart.px([[threshold_hu, chart.y[1]]])
     canvas.text(x + 6, y + 12, "bone", size=12, colour=VERMILLION, anchor="ls")

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
-from ...drawing.palette import BLUE, GREEN, ORANGE, SKY, VERMILLION, rgb_shares
+from ...drawing.palette import BLUE, GREEN, PATCH, SKY, VERMILLION, rgb_shares
 from ...drawing.pixels import RGB
 from ...drawing.shading import Solid, render
 from ...mesh import Mesh
@@ -20,9 +20,7 @@ from ...stages import surface_reconstruction as stage
 from ...volume import Volume
 from .controls import Slider, View
 from .panel import Panel
-from .parts import VIEW, pixel_to_fit, put_view
-
-_CHART = 350  # px
+from .parts import HEIGHT, LEFT, RIGHT, WIDTH, pixel_to_fit, put_view
 
 
 def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
@@ -48,18 +46,20 @@ def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
     controls = (Slider("steps", "smoothing steps", 0, 48, 24),)
     alt = "The shaded surface of the patch after smoothing, and a histogram of how far its vertices moved."
     bounds = float(patch.spacing.max() / 2), float(np.linalg.norm(patch.spacing) / 2)
-    return Panel(controls, lambda steps: _view(*shaded(steps), moved(steps), bounds, steps), alt=alt)
+    return Panel(controls, lambda steps: _view(*shaded(steps), towards, moved(steps), bounds, steps), alt=alt)
 
 
-def _view(rgb: RGB, px: float, moved: NDArray[np.float64], bounds: tuple[float, float], steps: int) -> View:
+def _view(
+    rgb: RGB, px: float, towards: ArrayLike, moved: NDArray[np.float64], bounds: tuple[float, float], steps: int
+) -> View:
     """The surface and its deviation from marching cubes, mm.
 
     `bounds` are half the longest side and half the diagonal of a voxel: from its middle to a wall, and to a corner.
     """
     wall, corner = bounds
     # surface at the left, how far its vertices moved at the right
-    canvas = Canvas(VIEW + _CHART, VIEW)
-    put_view(canvas, rgb, px)
+    canvas = Canvas(WIDTH, HEIGHT)
+    put_view(canvas, rgb, px, towards, (0, 0, LEFT, HEIGHT))
     _draw_deviation(canvas, moved, wall, corner)
     what = "Marching cubes as they come" if steps == 0 else f"{steps} smoothing steps"
     line = f"{what}: vertices moved {moved.mean():.2f} mm on average, {moved.max():.2f} mm at most; "
@@ -71,7 +71,7 @@ def _draw_deviation(canvas: Canvas, moved: NDArray[np.float64], wall: float, cor
     """Histogram of how far the vertices moved, beside their mean and the bounds."""
     # beside the histogram the two bounds that half a voxel sets
     counts, edges = np.histogram(moved, 60, (0, corner * 1.05))
-    chart = Chart((VIEW, 20, _CHART, 320), (0, corner * 1.05), (0.8, max(10.0, 1.5 * counts.max())), log=True)
+    chart = Chart((RIGHT[0], 20, RIGHT[2], 350), (0, corner * 1.05), (0.8, max(10.0, 1.5 * counts.max())), log=True)
     chart.frame(canvas, "vertices", "moved from marching cubes (mm)")
     chart.bars(canvas, edges, np.maximum(counts, 0.8), SKY)
     chart.upright(canvas, moved.mean(), BLUE, width=2.5)
@@ -79,14 +79,14 @@ def _draw_deviation(canvas: Canvas, moved: NDArray[np.float64], wall: float, cor
     chart.upright(canvas, corner, VERMILLION, dash=(6, 4))
     legend = [
         (BLUE, "line", f"mean {moved.mean():.2f} mm"),
-        (GREEN, "dash", f"half a voxel's longest side, {wall:.2f} mm"),
-        (VERMILLION, "dash", f"half a voxel's diagonal, {corner:.2f} mm"),
+        (GREEN, "dash", f"half a voxel's side, {wall:.2f} mm"),
+        (VERMILLION, "dash", f"half its diagonal, {corner:.2f} mm"),
     ]
-    canvas.legend(VIEW + 56, 352, legend)
+    canvas.legend(RIGHT[0] + 6, 390, legend)
 
 
 def _shaded(mesh: Mesh, towards: ArrayLike) -> tuple[RGB, float]:
     """A view of the surface, and the size of its pixels in mm."""
-    px = pixel_to_fit(mesh, towards, VIEW - 60)
-    solid = Solid(mesh, rgb_shares(ORANGE))
+    px = pixel_to_fit(mesh, towards, LEFT - 60)
+    solid = Solid(mesh, rgb_shares(PATCH))
     return (255 * render([solid], towards, px_mm=px).rgb).astype(np.uint8), px

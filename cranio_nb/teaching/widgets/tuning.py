@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...drawing.canvas import Canvas
-from ...drawing.palette import BLACK, BLUE, GREY
+from ...drawing.palette import BLACK, BLUE, GREY, PALE
 from ...evaluation.against_truth import TruthCheck, check_truth
 from ...mesh import OUTER
 from ...methods.catalogue import options_of as options_declared
@@ -24,9 +24,9 @@ from ...output.staging import replace_file
 from ...vault import opening_search
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
-from .evaluation import DistanceMap, map_distances
+from .evaluation import DistanceMap, draw_distances, map_distances
 from .panel import Panel
-from .parts import coloured, put_view
+from .parts import HEIGHT, WIDTH, draw_colour_scale
 
 if TYPE_CHECKING:
     from data_synth import Case
@@ -34,13 +34,19 @@ if TYPE_CHECKING:
 FILE = "cranio_nb_parameters.json"
 SLICES = ("axial, as in the paper", "fans from inside the head")
 _WORSE = "#B34E00"  # vermillion, dark enough for letters
-_WIDTH, _HEIGHT, _TOP = 440, 440, 1.5  # px, px, mm at the upper end of the colour scale
-_CAPTION = 30  # px above the map
+_MAP = 345  # px: width of the map
+_TOP = 1.5  # mm at the upper end of the colour scale
+_PRESETS: dict[str, dict[str, Any]] = {
+    "axial slices": {"slices": SLICES[0]},
+    "k by hand": {"own": True},
+    "tension 2": {"tension": 2.0},
+}
+_ALT = "The designed prosthesis coloured by its distance from the true one, and its scores beside those at the start."
 _MEASURES = (
     ("DSC", "", 3, True),
     ("border DSC", "", 3, True),
     ("HD95", "mm", 2, False),
-    ("mean surface distance", "mm", 2, False),
+    ("mean distance", "mm", 2, False),
     ("outer side, mean", "mm", 2, False),
     ("inner side, mean", "mm", 2, False),
     ("volume / true volume", "", 3, None),
@@ -123,14 +129,12 @@ def tuner(case: Case) -> Tuner:
     )
     # the scores at the start, to compare with
     first = made(*(control.value for control in controls))
-    alt = (
-        "The designed prosthesis coloured by its distance from the true one, and its scores beside those at the start."
-    )
     actions = {"save the parameters": lambda panel: f"Written: {panel.save()}"}
     return Tuner(
         controls,
         lambda **values: _view(made(*values.values()), first, values),
-        alt=alt,
+        alt=_ALT,
+        presets=_PRESETS,
         actions=actions,
         slow=True,
     )
@@ -204,29 +208,35 @@ def _measures(check: TruthCheck) -> tuple[float, ...]:
 
 def _view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
     """Map and table of a design, beside the numbers of the first one."""
-    canvas, view = Canvas(_WIDTH + 390, _HEIGHT + _CAPTION), Canvas(_WIDTH + 1, _HEIGHT)
+    canvas = Canvas(WIDTH, HEIGHT)
     # the map of distances
-    put_view(view, coloured(now[1].picture, _TOP), now[1].px)
-    canvas.inlay(view, 0, _CAPTION)
-    canvas.text(14, 22, f"distance of the outer side: blue 0, yellow {_TOP:g} mm and more", size=12, colour=GREY)
+    canvas.text(14, 22, "distance of the outer side from the truth")
+    draw_distances(canvas, now[1], _TOP, (0, 30, _MAP, 420))
+    draw_colour_scale(canvas, (40, 470), _MAP - 80, _TOP)
+    _draw_table(canvas, now, first)
+    dice, _, hd95, *_ = now[0]
+    line = f"DSC {dice:.3f}, HD95 {hd95:.2f} mm, outer side {now[0][4]:.2f} mm and inner side {now[0][5]:.2f} mm off, "
+    line += f"outer side {now[1].distances.max():.2f} mm at most."
+    off = ("directions", "coupling_mm") if values["slices"] == SLICES[0] else ()
+    return View(canvas.array(), line, off=off if values["own"] else (*off, "pressure_mm"))
+
+
+def _draw_table(canvas: Canvas, now: Measured, first: Measured) -> None:
+    """Each measure of a design beside that of the first one, and which of them is better."""
     # the table: each measure at the start and now
-    left = _WIDTH + 20
-    for x, name in ((left + 240, "at the start"), (left + 350, "now")):
-        canvas.text(x, 50, name, size=13, colour=GREY, anchor="rs")
+    left, before_x, now_x = _MAP + 10, WIDTH - 92, WIDTH - 4
+    for x, name in ((before_x, "at the start"), (now_x, "now")):
+        canvas.text(x, 50, name, size=12, colour=GREY, anchor="rs")
     for i, (name, unit, digits, more) in enumerate(_MEASURES):
         y, before, value = 86 + 40 * i, first[0][i], now[0][i]
-        canvas.line([(left, y + 12), (left + 356, y + 12)], "#DADADA", width=1)
-        canvas.text(left, y, name, size=14)
-        canvas.text(left + 240, y, f"{before:.{digits}f} {unit}".strip(), size=14, colour=GREY, anchor="rs")
+        canvas.line([(left, y + 12), (WIDTH, y + 12)], PALE, width=1)
+        canvas.text(left, y, name, size=12)
+        canvas.text(before_x, y, f"{before:.{digits}f} {unit}".strip(), size=12, colour=GREY, anchor="rs")
         mark, colour = _verdict(value, before, more, digits)
-        canvas.text(left + 350, y, f"{mark} {value:.{digits}f} {unit}".strip(), size=15, colour=colour, anchor="rs")
+        canvas.text(now_x, y, f"{mark} {value:.{digits}f} {unit}".strip(), size=13, colour=colour, anchor="rs")
     better, worse = "\N{BLACK UP-POINTING TRIANGLE} better", "\N{BLACK DOWN-POINTING TRIANGLE} worse than at the start"
     canvas.text(left, 86 + 40 * len(_MEASURES), better, size=12, colour=BLUE)
     canvas.text(left + 80, 86 + 40 * len(_MEASURES), worse, size=12, colour=_WORSE)
-    dice, _, hd95, *_ = now[0]
-    line = f"DSC {dice:.3f}, HD95 {hd95:.2f} mm, outer side {now[0][4]:.2f} mm and inner side {now[0][5]:.2f} mm off."
-    off = ("directions", "coupling_mm") if values["slices"] == SLICES[0] else ()
-    return View(canvas.array(), line, off=off if values["own"] else (*off, "pressure_mm"))
 
 
 def _verdict(value: float, before: float, more: bool | None, digits: int) -> tuple[str, str]:

@@ -1,5 +1,7 @@
 """A slice is drawn in mm, with all its parts where they are."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -82,3 +84,15 @@ def test_boundaries_part_bone_into_outside_and_inside(sliced, bone, patch):
 def test_every_kind_of_slice_can_be_drawn(sliced, bone, patch, plane, skeleton):
     figure = figures.slice_figure(sliced, sliced.slices[plane], bone, patch, skeleton=skeleton)
     assert figures.png(figure).startswith(b"\x89PNG")
+
+
+def test_crossings_are_marked_and_sides_named(sliced, bone, patch):
+    """The inner curve starts below the outer and ends above it: they cross in the middle."""
+    curves = sliced.slices[1].curves.copy()
+    curves[:, :, 0] = [[30, 34.5, 39], [39, 34.5, 30]]
+    figure = figures.slice_figure(sliced, dataclasses.replace(sliced.slices[1], curves=curves), bone, patch)
+    ax = figure.axes[0]
+    marks = [line for line in ax.lines if line.get_marker() == "x"]
+    np.testing.assert_allclose([(line.get_xdata(), line.get_ydata()) for line in marks], [[[40], [17.25]]])
+    letters = {t.get_text(): t.get_position() for t in ax.texts}
+    assert letters["L"][0] > 0.9 and letters["R"][0] < 0.1 and letters["A"][1] > 0.9

@@ -31,3 +31,16 @@ def test_view_names_the_patients_sides():
     assert places["L"][0] > places["R"][0] and "S" in places and "50 mm" in places
     bar = figure.axes[0].lines[-1].get_xdata()
     assert np.ptp(bar) * 0.6 == pytest.approx(50)
+
+
+def test_the_farthest_node_is_ringed():
+    """A ball from the front: its leftmost node is seen at the right edge of the ball, half-way up."""
+    mesh = ball()
+    distances = np.zeros(len(mesh.vertices))
+    distances[np.argmax(mesh.vertices[:, 0])] = 3.0
+    figure = figures.distance_figure(mesh, mesh, distances, (0, -1, 0), top_mm=2.0, px_mm=0.2)
+    ring = next(line for line in figure.axes[0].lines if line.get_marker() == "o")
+    shown = np.asarray(figure.axes[0].images[0].get_array())
+    rows, cols = np.nonzero((shown < 1).any(axis=-1))
+    assert ring.get_xdata()[0] == pytest.approx(cols.max(), abs=1.5)
+    assert ring.get_ydata()[0] == pytest.approx((rows.min() + rows.max()) / 2, abs=1.5 / 0.2)

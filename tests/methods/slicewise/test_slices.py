@@ -47,3 +47,13 @@ def test_a_place_in_an_axial_slice_is_its_voxel_in_the_world():
     for i in range(len(made.slices)):
         origin, row, col = made.frames[i]
         np.testing.assert_allclose(origin + 3.5 * row + 6.25 * col, bone.to_world([2 + i, 3.5, 6.25]), atol=1e-12)
+
+
+def test_a_record_says_whether_its_curves_cross():
+    x = np.linspace(0, 10, 11)
+    level, slope = np.column_stack([np.zeros(11), x]), np.column_stack([x - 4.5, x])
+    apart = SliceResult(0, "carried", curves=np.stack([level, level + np.array([3.0, 0.0])]))
+    across = SliceResult(0, "carried", curves=np.stack([level, slope]))
+    assert apart.record()["crossed"] is False and across.record()["crossed"] is True
+    np.testing.assert_allclose(across.crossings, [[0.0, 4.5]])
+    assert "crossed" not in SliceResult(0, "skipped").record()

@@ -11,7 +11,7 @@ from cranio_nb.evaluation import against_truth
 @pytest.fixture
 def live(monkeypatch):
     monkeypatch.setenv("CRANIO_NB_MODE", "widget")
-    return pytest.importorskip("ipywidgets")
+    return pytest.importorskip("anywidget")
 
 
 @pytest.fixture

@@ -4,12 +4,13 @@ import io
 
 import numpy as np
 import pytest
-from panels import INSIDE, close, pixels_of
+from panels import INSIDE, close, move, pixels_of
 from PIL import Image
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets.controls import Slider, View
+from cranio_nb.teaching.widgets.parts import HEIGHT, WIDTH
 
 
 def make_all(ct, skull, opened, arch, made, true):
@@ -67,10 +68,10 @@ def test_a_live_panel_shows_the_pure_picture_of_its_controls(live, panels):
     moves |= {"bent_plate": ("second_mm", 9.0), "elastic_sheet": ("step", 1)}
     for name, panel in panels.items():
         assert close(pixels_of(panel), panel.view.rgb), name
-        before = panel.front.image.value
+        before = panel.front.widget.picture
         control, value = moves[name]
-        panel.front.controls[control].value = value
-        assert panel.front.image.value != before, name
+        move(panel, **{control: value})
+        assert panel.front.widget.picture != before, name
         assert panel.values[control] == value
         assert close(pixels_of(panel), panel.picture(**panel.values).rgb), name
 
@@ -104,12 +105,12 @@ def test_a_panel_refuses_a_control_it_does_not_have(static, arch):
         widgets.balloon(arch, INSIDE).set(kk=1)
 
 
-def test_every_control_is_labelled_and_within_its_limits(live, panels):
-    for panel in panels.values():
-        for name, widget in panel.front.controls.items():
-            assert widget.description and widget.tabbable is not False, name
-            if hasattr(widget, "max"):
-                assert widget.min <= widget.value <= widget.max
+def test_all_panels_have_the_size_that_fits_a_laptop_and_few_controls_unfolded(panels):
+    for name, panel in panels.items():
+        assert panel.view.rgb.shape == (HEIGHT, WIDTH, 3), name
+        labels = [control.label for control in panel.controls.values()]
+        assert all(labels) and len(set(labels)) == len(labels), name
+        assert 1 <= sum(not control.expert for control in panel.controls.values()) <= 4, name
 
 
 def test_a_live_bundle_has_widget_picture_and_line(live, panels):

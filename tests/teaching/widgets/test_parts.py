@@ -30,6 +30,13 @@ def test_a_pixel_fits_a_ball_of_any_direction(towards):
     assert parts.pixel_to_fit(ball, towards, 100) == pytest.approx(0.2, rel=0.01)
 
 
+def test_the_window_holds_what_is_shown_in_any_slice():
+    mask = np.zeros((2, 90, 70), bool)
+    mask[0, 5, 40], mask[1, 80, 3] = True, True
+    (x, y), (u, v) = parts.left_window(mask).px([[5, 40], [80, 3]])
+    assert 24 < y < v < parts.HEIGHT - 24 and 24 < u < x < parts.LEFT - 24
+
+
 def test_the_scale_runs_from_its_lower_to_its_upper_end():
     canvas = Canvas(220, 60)
     parts.draw_colour_scale(canvas, (10, 5), 200, 3.0)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ....drawing.canvas import Canvas
 from ....drawing.canvas_axes import Chart
-from ....drawing.palette import BLACK, BLUE, BONE, VERMILLION
+from ....drawing.palette import BLACK, BONE, PROSTHESIS, TRUTH
 from ....errors import InputRefused
 from ....methods import thin_plate
 from ....opening import Opening
@@ -22,11 +22,13 @@ from ....vault import radius_measurement, symmetry
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from ..parts import coloured, draw_colour_scale
-from .scene import SIDE, WIDE, Array, Scene, error_line, make_scene, thin_rays
+from ..parts import HEIGHT, WIDTH, coloured, draw_colour_scale
+from .scene import Array, Scene, error_line, make_scene, thin_rays
 
 _EVERY = 3  # rays
 _TOP = 2.0  # mm: upper end of the scale of errors
+_HALF = WIDTH // 2  # px
+_MAP = _HALF - 40  # px: side of the map
 
 
 def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) -> Panel:
@@ -62,7 +64,12 @@ def bent_plate(bone: Volume, opening: Opening, truth: Prosthesis | None = None) 
     )
     bend = lru_cache(maxsize=64)(lambda **lengths: _bend(scene, **lengths))
     alt = "The vault as a map, coloured by how far the plate lies off the bone; beside it a profile through the hole."
-    return Panel(controls, lambda **lengths: _view(scene, bend(**lengths), lengths), alt=alt, slow=True)
+    none = {control.name: 0.0 for control in controls}
+    settings = {"second order only": {"second_mm": 12.0}, "third order only": {"third_mm": 1.8}, "nothing": {}}
+    presets = {name: none | setting for name, setting in settings.items()}
+    return Panel(
+        controls, lambda **lengths: _view(scene, bend(**lengths), lengths), alt=alt, presets=presets, slow=True
+    )
 
 
 def _bend(scene: Scene, *, second_mm: float, third_mm: float, mirror_mm: float) -> Array:
@@ -83,8 +90,8 @@ def _view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
     """Map of errors and profile of a plate."""
     # errors in the hole where the truth is known, and on the bone beside it
     off, hole = plate - scene.true, scene.radius_map.hole
-    canvas = Canvas(SIDE + WIDE, SIDE)
-    _draw_map(canvas, off, hole)
+    canvas = Canvas(WIDTH, HEIGHT)
+    _draw_map(canvas, off, hole, scene.radius_map.grid.axes)
     _draw_profile(canvas, scene, plate)
     line = "a = {second_mm:g}, b = {third_mm:g}, c = {mirror_mm:g} mm: ".format(**lengths)
     beside = off[~hole & np.isfinite(off)]
@@ -98,20 +105,22 @@ def _view(scene: Scene, plate: Array, lengths: dict[str, float]) -> View:
     return View(canvas.array(), line + known, off=() if scene.mirrored is not None else ("mirror_mm",))
 
 
-def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_]) -> None:
+def _draw_map(canvas: Canvas, off: Array, hole: NDArray[np.bool_], axes: Array) -> None:
     """Absolute errors over the map, the hole outlined, and their scale."""
     # the part of the map that has values, scaled to the square
-    side, middle = SIDE - 90, len(off) // 2
+    middle = len(off) // 2
     reach = int(np.abs(np.argwhere(np.isfinite(off) | hole) - middle).max(initial=1))
-    at = np.linspace(max(middle - reach, 0), min(middle + reach, len(off) - 1), side).round().astype(int)
+    at = np.linspace(max(middle - reach, 0), min(middle + reach, len(off) - 1), _MAP).round().astype(int)
     rgb = coloured(np.abs(off[np.ix_(at, at)]).astype(np.float32), _TOP)
     # black where the hole ends
     inside = hole[np.ix_(at, at)]
     edge = inside & ~(np.roll(inside, 2, 0) & np.roll(inside, -2, 0) & np.roll(inside, 2, 1) & np.roll(inside, -2, 1))
     rgb[edge] = (0, 0, 0)
-    canvas.text(45, 22, "plate to bone (mm), the hole outlined")
-    canvas.place(rgb, 45, 34)
-    draw_colour_scale(canvas, (45, 394), side, _TOP)
+    # the rows of the map count upwards in the head: turned round, it is seen from outside
+    canvas.text(20, 66, "plate to bone (mm), the hole outlined")
+    canvas.place(rgb[::-1], 20, 80)
+    canvas.sides((20, 80, _MAP, _MAP), axes[0], -axes[1])
+    draw_colour_scale(canvas, (20, 96 + _MAP), _MAP, _TOP)
 
 
 def _draw_profile(canvas: Canvas, scene: Scene, plate: Array) -> None:
@@ -125,15 +134,15 @@ def _draw_profile(canvas: Canvas, scene: Scene, plate: Array) -> None:
     ends = (float(x[near].min()), float(x[near].max())) if near.any() else (-1.0, 1.0)
     low, high = float(radii.min()), float(radii.max())
     # whole skull dashed, plate full, bone beside the hole as dots
-    profile = Chart((SIDE, 8, WIDE, SIDE - 16), ends, (low - 1, high + 0.35 * (high - low) + 1))
+    profile = Chart((_HALF, 48, _HALF, HEIGHT - 110), ends, (low - 1, high + 0.35 * (high - low) + 1))
     profile.frame(canvas, "radius of the outer surface (mm)", "along the map's middle row (mm)")
-    for curve, colour, width, dash in ((scene.true[row], VERMILLION, 2.0, (7, 4)), (plate[row], BLUE, 2.5, None)):
+    for curve, colour, width, dash in ((scene.true[row], TRUTH, 3.0, (7, 4)), (plate[row], PROSTHESIS, 2.5, None)):
         for part in _runs(np.isfinite(curve) & near):
             canvas.line(profile.px(np.column_stack([x, curve])[part]), colour, width=width, dash=dash)
     known = np.isfinite(bone) & near
     canvas.dots(profile.px(np.column_stack([x, bone])[known]), BONE, radius=3.5, edge=BLACK)
-    entries = [(BONE, "dot", "bone"), (VERMILLION, "dash", "whole skull"), (BLUE, "line", "plate")]
-    canvas.legend(SIDE + WIDE - 140, 40, entries)
+    entries = [(BONE, "dot", "bone"), (TRUTH, "dash", "whole skull"), (PROSTHESIS, "line", "plate")]
+    canvas.legend(WIDTH - 150, 80, entries)
 
 
 def _runs(known: NDArray[np.bool_]) -> list[slice]:

@@ -16,7 +16,6 @@ from ....vault import radius_measurement
 from ....vault.ray_grid import RadiusMap
 from ....volume import Volume
 
-SIDE, WIDE = 440, 460  # px: the square at the left, and the chart beside it
 _ANY = 1e-9  # a mean above this has something in it; sums of zeros may be a little off
 
 Array = NDArray[np.float64]

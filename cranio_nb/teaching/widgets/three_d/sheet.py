@@ -12,7 +12,7 @@ import numpy as np
 
 from ....drawing.canvas import Canvas
 from ....drawing.canvas_axes import Chart
-from ....drawing.palette import BLACK, BLUE, BONE, ORANGE, SKY
+from ....drawing.palette import BLACK, BONE, ORANGE, PROSTHESIS, SKY, WHITE
 from ....methods.dnurbs import method as dnurbs
 from ....methods.dnurbs import sheet_motion
 from ....methods.dnurbs.sheet import Sheet
@@ -24,13 +24,16 @@ from ....vault.ray_grid import RadiusMap
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from .scene import SIDE, WIDE, Scene, error_line, make_scene
+from ..parts import HEIGHT, WIDTH
+from .scene import Array, Scene, error_line, make_scene
 
 MAX_STEPS = 40
 _EVERY = 4  # rays
 _SPAN = 25.0  # mm between the knots of the sheet
 _DEEP = 0.8  # part of its radius to which the sheet is pushed in before it is let go
 _LEAN = np.radians(25)  # of the view onto the net
+_SIDE = WIDTH // 2  # px
+_TOP = 310  # px: height of the upper pictures
 _TOL = 0.02  # mm a step: at rest
 
 
@@ -67,16 +70,19 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
     run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.radius_map, **values))
     controls = (
-        Slider("wavelength_mm", "wavelength that is halved: rigidity", 5, 80, 20, unit="mm", log=True),
-        Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5),
-        Slider("damping", "\N{GREEK SMALL LETTER GAMMA}: damping per parameter area", 0.1, 100, 1, log=True),
+        Slider("wavelength_mm", "wavelength that is halved: rigidity", 5, 80, 20, unit="mm", log=True, ahead=0),
+        Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5, ahead=0),
+        Slider("damping", "\N{GREEK SMALL LETTER GAMMA}: damping per parameter area", 0.1, 100, 1, log=True, ahead=0),
         Slider("step", "step", 0, MAX_STEPS, MAX_STEPS, player=True),
     )
     alt = (
         "A net of control points over the bone and the sheet it carries at the chosen step; beside it a cut through "
         "the sheet, and its energy at every step."
     )
-    return Panel(controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, slow=True)
+    presets = {"heavier": {"mass": 3.0}, "more friction": {"damping": 10.0}, "stiffer": {"wavelength_mm": 80.0}}
+    return Panel(
+        controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, presets=presets, slow=True
+    )
 
 
 def relax_sheet(radius_map: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
@@ -110,13 +116,13 @@ def _view(scene: Scene, way: Way, step: int) -> View:
     """Net and sheet at a step, a cut, and the energy."""
     last = len(way.motions) - 1
     now = way.motions[min(step, last)]
-    canvas = Canvas(SIDE + WIDE, SIDE)
-    _draw_net(canvas, way, now.sheet)
+    canvas = Canvas(WIDTH, HEIGHT)
+    _draw_net(canvas, way, now.sheet, scene.radius_map.grid.axes)
     _draw_cut(canvas, way, now.sheet)
     _draw_energy(canvas, way, min(step, last))
     # the numbers of this step, and how far the sheet is off in the hole
     state = "at rest" if now.converged else "not at rest"
-    line = f"Step {min(step, last)} of {last}, {state}: energy {now.energy:.0f} mm4"
+    line = f"Step {min(step, last)} of {last}, {state}: energy {now.energy:.0f} mm\N{SUPERSCRIPT FOUR}"
     line += f", moved {now.moved:.2f} mm at most" if now.n_iter else ""
     hole = scene.radius_map.hole
     off = (dnurbs.radii_of(now.sheet, scene.radius_map) - scene.true)[hole]
@@ -124,26 +130,28 @@ def _view(scene: Scene, way: Way, step: int) -> View:
     return View(canvas.array(), line + ".", limits={"step": last})
 
 
-def _draw_net(canvas: Canvas, way: Way, one: Sheet) -> None:
+def _draw_net(canvas: Canvas, way: Way, one: Sheet, axes: Array) -> None:
     """Control net, sheet and bone, seen from outside and a little from below."""
     # seen along a line that leans by _LEAN; the last shape and the bone set the scale
-    flat = lambda points: points @ np.array([[1, 0], [0, np.cos(_LEAN)], [0, -np.sin(_LEAN)]])  # noqa: E731
+    flat = lambda points: points @ np.array([[1, 0], [0, -np.cos(_LEAN)], [0, -np.sin(_LEAN)]])  # noqa: E731
     springs = way.setting.springs.points
     every = flat(np.concatenate([way.motions[-1].sheet.control.reshape(-1, 3), springs]))
-    zoom, middle = (SIDE - 40) / np.ptp(every, axis=0).max(), (every.min(axis=0) + every.max(axis=0)) / 2
-    place = lambda points: (flat(points) - middle) * zoom + SIDE / 2  # noqa: E731
-    inset = Canvas(SIDE, SIDE)
-    inset.dots(place(springs), BONE, radius=1.5)
+    zoom, middle = (_TOP - 50) / np.ptp(every, axis=0).max(), (every.min(axis=0) + every.max(axis=0)) / 2
+    place = lambda points: (flat(points) - middle) * zoom + np.array([_SIDE, _TOP]) / 2  # noqa: E731
+    inset = Canvas(_SIDE, _TOP)
+    inset.dots(place(springs[::2]), BONE, radius=1.5)  # every other one: they are many, and hold still
     # lines of the sheet twice in each span, then its control net
     (n, m), fine = one.spans, 48
-    for v in np.linspace(0, n, 2 * n + 1):
-        inset.line(place(one.at(np.full(fine, v), np.linspace(0, m, fine))), SKY, width=1.5)
-    for u in np.linspace(0, m, 2 * m + 1):
-        inset.line(place(one.at(np.linspace(0, n, fine), np.full(fine, u))), SKY, width=1.5)
+    v, u = np.linspace(0, n, 2 * n + 1), np.linspace(0, m, 2 * m + 1)
+    across = np.repeat(v, fine), np.tile(np.linspace(0, m, fine), len(v))
+    along = np.tile(np.linspace(0, n, fine), len(u)), np.repeat(u, fine)
+    lines = one.at(*(np.concatenate(ways) for ways in zip(across, along, strict=True)))
+    for line in lines.reshape(-1, fine, 3):
+        inset.line(place(line), SKY, width=1.5)
     for points in (*one.control, *one.control.swapaxes(0, 1)):
         inset.line(place(points), ORANGE, width=1)
     inset.dots(place(one.control.reshape(-1, 3)), ORANGE, radius=3, edge=BLACK)
-    inset.legend(6, 6, [(ORANGE, "dot", "control net"), (SKY, "line", "sheet"), (BONE, "dot", "bone")])
+    inset.sides((0, 0, _SIDE, _TOP), axes[0], -axes[1])
     canvas.inlay(inset, 0, 0)
 
 
@@ -156,11 +164,11 @@ def _draw_cut(canvas: Canvas, way: Way, one: Sheet) -> None:
     wide = float(np.abs(springs.points[:, 0]).max()) + 5
     high = float(springs.points[:, 2].max()) + 8
     # limits by the bone, so that the axes hold still while the sheet moves
-    cut = Chart((SIDE, 0, WIDE, 250), (-wide, wide), (float(springs.points[:, 2].min()) - 8, high))
-    cut.frame(canvas, "a cut through the middle: out of the head (mm)", "across the hole (mm)")
+    cut = Chart((_SIDE, 0, _SIDE, _TOP), (-wide, wide), (float(springs.points[:, 2].min()) - 8, high))
+    cut.frame(canvas, "a cut: out of the head (mm)", "across the hole (mm)")
     canvas.dots(cut.px(points[:, [0, 2]]), BONE, radius=3.5, edge=BLACK)
     u = np.linspace(0, one.spans[1], 80)
-    canvas.line(cut.px(one.at(np.full(80, middle), u)[:, [0, 2]]), BLUE, width=2.5)
+    canvas.line(cut.px(one.at(np.full(80, middle), u)[:, [0, 2]]), PROSTHESIS, width=2.5)
     canvas.line(cut.px(control[:, [0, 2]]), ORANGE, width=1, dash=(5, 4))
     canvas.dots(cut.px(control[:, [0, 2]]), ORANGE, radius=3.5, edge=BLACK)
 
@@ -169,7 +177,9 @@ def _draw_energy(canvas: Canvas, way: Way, step: int) -> None:
     """Energy at every step, the present one marked."""
     energy = np.array([motion.energy for motion in way.motions])
     limits = (energy.min() / 1.3, energy.max() * 1.5)
-    curve = Chart((SIDE, 250, WIDE, SIDE - 250), (0, len(energy)), limits, log=True)
+    curve = Chart((0, _TOP, WIDTH, HEIGHT - _TOP), (0, len(energy)), limits, log=True)
     curve.frame(canvas, "energy: bending, springs and motion (mm\N{SUPERSCRIPT FOUR})", "step")
+    entries = [(ORANGE, "dot", "control net"), (SKY, "line", "sheet of the net"), (PROSTHESIS, "line", "sheet, cut")]
+    canvas.legend(WIDTH - 170, _TOP + 30, [*entries, (BONE, "dot", "bone")])
     canvas.line(curve.px(np.column_stack([np.arange(len(energy)), energy])), SKY, width=2)
-    canvas.dots(curve.px([[step, energy[step]]]), "#FFFFFF", radius=5, edge=BLACK)
+    canvas.dots(curve.px([[step, energy[step]]]), WHITE, radius=5, edge=BLACK)
