@@ -17,7 +17,7 @@ from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
 from .opening_choice import JudgedOpening, choose_openings
-from .outermost_bone import STEP_DEG, OutermostBone, room_in_image, measure_outermost_bone, open_rays
+from .outermost_bone import STEP_DEG, OutermostBone, measure_outermost_bone, open_rays, room_in_image
 from .ray_grid import filled_from_nearest
 from .thin_bone import Material
 from .verdict import Signs, judge

@@ -7,7 +7,7 @@ import pytest
 
 from cranio_nb.vault.opening_search import survey_openings
 from cranio_nb.vault.orientation import head_axes
-from cranio_nb.vault.outermost_bone import room_in_image, measure_outermost_bone, open_rays
+from cranio_nb.vault.outermost_bone import measure_outermost_bone, open_rays, room_in_image
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
