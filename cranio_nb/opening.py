@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from .grid import true_indices
 from .volume import Volume
 
 
@@ -62,7 +63,7 @@ class Opening:
         ndarray, shape (3,)
             World mm.
         """
-        return self.sheet.to_world(np.argwhere(self.sheet.voxels).mean(axis=0))
+        return self.sheet.to_world(true_indices(self.sheet.voxels).mean(axis=0))
 
     @property
     def direction(self) -> NDArray[np.float64]:

@@ -5,7 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cranio_nb.grid import AxisOrder, box_around, canonical_order, inside_grid, move_affine, nearest_values, touched
+from cranio_nb.grid import (
+    AxisOrder,
+    box_around,
+    canonical_order,
+    inside_grid,
+    move_affine,
+    nearest_values,
+    touched,
+    true_indices,
+)
 from cranio_nb.volume import Volume
 
 
@@ -69,3 +78,12 @@ def test_another_grid_along_the_same_axes_is_where_its_start_and_step_say():
 
 def test_the_canonical_order_of_a_canonical_grid_changes_nothing():
     assert canonical_order(np.diag([1.0, 1, 1, 1])[[2, 1, 0, 3]]) == AxisOrder((0, 1, 2), (False, False, False))
+
+
+@pytest.mark.parametrize("shape", [(7,), (4, 6), (3, 4, 5), (0, 3)])
+def test_true_indices_are_those_of_argwhere_in_memory_too(shape):
+    mask = np.random.default_rng(3).random(shape) < 0.3
+    for one in (mask, mask.T, mask[::-1]):
+        found, wanted = true_indices(one), np.argwhere(one)
+        np.testing.assert_array_equal(found, wanted)
+        assert found.dtype == wanted.dtype and found.strides == wanted.strides  # sums run in the same order

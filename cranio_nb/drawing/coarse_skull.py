@@ -54,11 +54,10 @@ def skull_surface(bone: Volume, floor_mm: float = -np.inf) -> Mesh:
 
 def _above(bone: Volume, floor_mm: float) -> Volume:
     """The box of the bone, cut off at a height; planes of the package's volumes rise to the top of the head."""
-    box = ndimage.find_objects(bone.voxels.view(np.uint8))
-    if not box:
+    planes, rows, cols = bone.box()
+    if planes.stop == 0:
         return bone
     # heights of the planes' middles: planes may lean, when the gantry was tilted
-    planes, rows, cols = box[0]
     middle = [(s.start + s.stop) / 2 for s in (rows, cols)]
     heights = bone.to_world([[k, *middle] for k in range(planes.start, planes.stop)])[:, 2]
     low = planes.start + int(np.count_nonzero(heights < floor_mm))

@@ -178,7 +178,7 @@ def _scan(
     Each face that looks at the viewer is sampled at least once per pixel; the nearest sample of a pixel wins.
     """
     # faces turned away are left out; the others get steps of less than a pixel along their longest edge
-    corners = at[faces].astype(np.float32)
+    corners = at.astype(np.float32)[faces]
     edge1, edge2 = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
     front = edge1[:, 0] * edge2[:, 1] - edge1[:, 1] * edge2[:, 0] < 0  # rows run down
     longest = np.sqrt(np.maximum(np.maximum((edge1**2).sum(1), (edge2**2).sum(1)), ((edge1 - edge2) ** 2).sum(1)))

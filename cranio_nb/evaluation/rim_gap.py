@@ -13,8 +13,12 @@ from scipy import ndimage
 from scipy.spatial import cKDTree
 
 from ..errors import InputRefused
+from ..grid import box_around, true_indices
 from ..mesh import Mesh
 from ..volume import Volume
+
+_NEIGHBOURS = 8  # surface voxels, among which the nearest box is looked for
+_NEAR_MM = 8.0  # within which they usually lie, so that the rest of the mask need not be searched
 
 
 @dataclass(frozen=True)
@@ -83,14 +87,29 @@ def distance_to_voxels(points: NDArray[np.float64], mask: Volume) -> NDArray[np.
     >>> distance_to_voxels(np.array([[0.2, 0.0, 0.0], [3.0, 0.0, 0.0]]), mask)
     array([0. , 2.5])
     """
-    surface = np.argwhere(mask.voxels & ~ndimage.binary_erosion(mask.voxels))
-    if not len(surface):
+    if not mask.voxels.any():
         raise InputRefused("NoBone", "The bone mask is empty; a gap needs bone.")
     # the boxes of the nearest surface voxels reach half a voxel to each side
     at = mask.to_voxel(points)
-    _, near = cKDTree(mask.to_world(surface)).query(points, k=np.arange(1, 1 + min(8, len(surface))))
-    step = at[:, None] - surface[near]
+    step = at[:, None] - _nearest_surface(points, at, mask)
     outside = step - np.clip(step, -0.5, 0.5)
     gap = np.linalg.norm(outside @ mask.edges, axis=2).min(axis=1)
     gap[mask.at_index(at, outside=False)] = 0
     return gap
+
+
+def _nearest_surface(points: NDArray[np.float64], at: NDArray[np.float64], mask: Volume) -> NDArray[np.intp]:
+    """Voxels of the mask's surface nearest to points, shape (N, 8, 3), or fewer where it has fewer; `at` in voxels."""
+    # a box that reaches a little further than that: its cut faces look like surface, but lie beyond
+    reach = _NEAR_MM * np.linalg.norm(mask.steps(np.eye(3)), axis=0)
+    whole = (slice(None),) * 3
+    for box in (box_around(at, mask.shape, np.ceil(reach).astype(int) + 1), whole):
+        part = mask.voxels[box]
+        surface = true_indices(part & ~ndimage.binary_erosion(part)) + [side.start or 0 for side in box]
+        count = min(_NEIGHBOURS, len(surface))
+        if not count:
+            continue
+        distance, near = cKDTree(mask.to_world(surface)).query(points, k=np.arange(1, 1 + count))
+        if count == _NEIGHBOURS and distance.max() <= _NEAR_MM:
+            break
+    return surface[near]

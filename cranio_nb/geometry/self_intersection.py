@@ -83,19 +83,21 @@ def _near_pairs(
 ) -> NDArray[np.intp]:
     """Pairs of boxes that overlap, shape (N, 2), given the first cell of each box and the boxes in each cell."""
     # entries of one cell lie side by side once they are sorted
-    grid = tuple(cell.max(axis=0) + 1)
-    key = np.ravel_multi_index(tuple(cell.T), grid)
+    key = np.ravel_multi_index(tuple(cell.T), tuple(cell.max(axis=0) + 1))
     order = np.argsort(key, kind="stable")
     box, key = box[order], key[order]
+    axes = [np.ascontiguousarray(a.T) for a in (lo, hi, first, cell[order])]
     found, i, gap = [np.empty((0, 2), np.intp)], np.arange(len(key)), 1
     while len(i):  # each entry against the gap-th after it, as long as both lie in one cell
         i = i[i + gap < len(key)]
         i = i[key[i] == key[i + gap]]
-        a, b = box[i], box[i + gap]
-        meet = (np.maximum(lo[a], lo[b]) <= np.minimum(hi[a], hi[b])).all(axis=1)
-        shared = np.ravel_multi_index(tuple(np.maximum(first[a], first[b]).T), grid)
-        # each pair once: in the first cell both share
-        found.append(np.sort(np.stack([a, b], axis=1)[meet & (shared == key[i])], axis=1))
+        a, b, place = box[i], box[i + gap], i
+        for low, high, start, of in zip(*axes, strict=True):
+            # each pair once: in the first cell both share
+            meet = np.maximum(start[a], start[b]) == of[place]
+            meet &= np.maximum(low[a], low[b]) <= np.minimum(high[a], high[b])
+            a, b, place = a[meet], b[meet], place[meet]
+        found.append(np.stack([np.minimum(a, b), np.maximum(a, b)], axis=1))
         gap += 1
     return np.concatenate(found)
 

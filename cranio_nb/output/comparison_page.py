@@ -15,6 +15,7 @@ from ..drawing import figures, palette
 from ..drawing.coarse_skull import skull_surface
 from ..drawing.shading import view_axes
 from ..evaluation.against_truth import SIDES
+from ..grid import true_indices
 from ..mesh import Mesh
 from ..pipeline.compare import MEASURES, Comparison
 from ..vault.remarks import opening_remarks
@@ -106,7 +107,7 @@ def cut_shots(comparison: Comparison) -> list[Shot]:
     # cuts along the picture's axes as seen from outside, through the middle of the opening
     largest = case.openings[0]
     right, down, towards = view_axes(largest.direction)
-    points = largest.sheet.to_world(np.argwhere(largest.sheet.voxels)) - largest.centre
+    points = largest.sheet.to_world(true_indices(largest.sheet.voxels)) - largest.centre
     shots = []
     for along in (right, down):
         # wide enough for the opening's extent along this cut

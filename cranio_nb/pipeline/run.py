@@ -17,6 +17,7 @@ from ..evaluation.against_truth import TruthCheck, check_truth
 from ..evaluation.paper_tables import count_crossed, count_not_converged, count_statuses
 from ..evaluation.rim_gap import GapStats, rim_gap
 from ..geometry.mesh_check import MeshReport, check_mesh
+from ..grid import true_indices
 from ..mesh import RIM
 from ..methods.catalogue import default_options
 from ..methods.design import design
@@ -198,10 +199,10 @@ def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...])
 
 def _farthest(patch: Volume, openings: Sequence[Opening]) -> float:
     """Largest distance of a patch's voxels from the boxes around the openings, mm."""
-    index = np.argwhere(patch.voxels)
+    index = true_indices(patch.voxels)
     distances = []
     for opening in openings:
-        held = np.argwhere(opening.sheet.voxels)
+        held = true_indices(opening.sheet.voxels)
         beyond = np.maximum(np.maximum(held.min(axis=0) - index, index - held.max(axis=0)), 0)
         distances.append(np.linalg.norm(beyond * patch.spacing, axis=1))
     return float(np.min(distances, axis=0).max())

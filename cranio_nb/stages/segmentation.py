@@ -85,14 +85,14 @@ def segment(
     mask = ct.voxels
     if mask.dtype != bool:
         mask = within_skin(apply_threshold(ct.voxels, threshold, upper), ct)
-    box = ndimage.find_objects(mask.view(np.uint8))
-    if not box:
+    box = ct.with_voxels(mask).box()
+    if not mask[box].size:
         raise InputRefused("NoBone", f"No voxel reaches {threshold:g} HU.", "Lower the bone threshold, or give a CT.")
 
     # artefacts first, so that no hole of theirs is filled
-    skull = drop_artefacts(mask[box[0]], min_part=min_part)
+    skull = drop_artefacts(mask[box], min_part=min_part)
     out = np.zeros(ct.shape, bool)
-    out[box[0]] = fill_holes(skull, max_hole_px=max_hole_mm2 / float(np.prod(ct.spacing[1:])))
+    out[box] = fill_holes(skull, max_hole_px=max_hole_mm2 / float(np.prod(ct.spacing[1:])))
     return ct.with_voxels(out)
 
 
@@ -268,8 +268,8 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     labels, n_parts = ndimage.label(mask)
     if n_parts == 1:
         return mask
-    sizes = np.bincount(labels.ravel())
-    sizes[0] = 0
+    part_of = labels[mask]
+    sizes = np.bincount(part_of, minlength=n_parts + 1)
     boxes = ndimage.find_objects(labels)
     large = [part for part in range(1, n_parts + 1) if sizes[part] >= min_part * sizes.max()]
 
@@ -277,7 +277,9 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     skull = max(large, key=lambda part: _n_voxels(boxes[part - 1]) * sizes[part])
     keep = np.zeros(n_parts + 1, bool)
     keep[[part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]] = True
-    return keep[labels]
+    kept = np.zeros_like(mask)
+    kept[mask] = keep[part_of]
+    return kept
 
 
 def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.bool_]:

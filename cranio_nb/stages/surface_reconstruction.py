@@ -83,10 +83,10 @@ def extract_surface(patch: Volume, *, smooth: bool = True, n_steps: int = 24) ->
     (8, 0.166667)
     """
     # the patch in its own box, with a border so that the surface closes
-    box = ndimage.find_objects(np.ascontiguousarray(patch.voxels, bool).view(np.uint8))
-    if not box:
+    box = patch.box()
+    if not patch.voxels[box].size:
         raise InputRefused("EmptyPatch", "The patch has no voxels; a surface needs at least one.")
-    part = patch.crop(box[0])
+    part = patch.crop(box)
     inside = np.pad(part.voxels.astype(bool), 1)
 
     vertices, faces = _march_cubes(np.where(inside, 1.0, -1.0))

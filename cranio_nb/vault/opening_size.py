@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..grid import true_indices
 from ..opening import Opening
 
 
@@ -53,7 +54,7 @@ def measure_opening(opening: Opening) -> OpeningSize:
     -------
     OpeningSize
     """
-    index = np.argwhere(opening.sheet.voxels)
+    index = true_indices(opening.sheet.voxels)
     points = opening.sheet.to_world(index)
     centre = points.mean(axis=0)
     # unit direction out of the head

@@ -107,14 +107,19 @@ def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> Outermost
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / STEP_DEG))
     grid = RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1)
     directions = grid.directions
-    # outwards: the last bone met stays
-    start, step = bone.to_voxel(grid.centre), bone.steps(directions)
-    radius, seen = np.full(directions.shape[:2], np.nan), np.zeros(directions.shape[:2])
-    for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM):
-        index = start + length * step
-        seen[inside_grid(index, bone.shape)] = length
-        radius[bone.at_index(index, outside=False)] = length
-    return OutermostBone(grid, radius, seen)
+    start, step = bone.to_voxel(grid.centre), bone.steps(directions).reshape(-1, 3)
+    radius, seen = np.full(len(step), np.nan), np.zeros(len(step))
+    # inwards, each ray up to the first bone it meets
+    left = np.arange(len(step))
+    for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM)[::-1]:
+        index = start + length * step[left]
+        inside = inside_grid(index, bone.shape)
+        seen[left[inside]] = np.maximum(seen[left[inside]], length)
+        met = np.zeros(len(left), bool)
+        met[inside] = bone.at_index(index[inside], outside=False)
+        radius[left[met]] = length
+        left = left[~met]
+    return OutermostBone(grid, radius.reshape(grid.n, grid.n), seen.reshape(grid.n, grid.n))
 
 
 def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[np.bool_]]:

@@ -11,7 +11,7 @@ from scipy import ndimage
 
 from ..errors import InputRefused
 from ..geometry.robust import huber_weights, reweighted_fit, spread
-from ..grid import touched
+from ..grid import touched, true_indices
 from ..opening import Opening
 from ..volume import Volume
 from .ray_casting import expected_radius, surface_radii
@@ -48,7 +48,7 @@ def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
     """
     # a grid that reaches beyond the opening on all sides
     axes = _axes(opening, bone)
-    points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)) - opening.head_centre
+    points = opening.sheet.to_world(true_indices(opening.sheet.voxels)) - opening.head_centre
     widest = np.degrees(np.arccos(np.clip(points @ axes[2] / np.linalg.norm(points, axis=1), -1, 1))).max()
     half = int(min(widest + _BESIDE_DEG, _LARGEST_DEG) / _STEP_DEG)
     grid = RayGrid(opening.head_centre, axes, np.radians(_STEP_DEG), 2 * half + 1)
@@ -110,7 +110,7 @@ def _no_hole(problem: str) -> InputRefused:
 def _axes(opening: Opening, bone: Volume) -> NDArray[np.float64]:
     """Axes of the map: the middle points to the opening, v runs along its long side, u across it."""
     middle = opening.direction
-    points = opening.sheet.to_world(np.argwhere(opening.sheet.voxels)[::7])
+    points = opening.sheet.to_world(true_indices(opening.sheet.voxels)[::7])
     flat = points - points.mean(axis=0)
     flat = flat - np.outer(flat @ middle, middle)
     if np.abs(flat).max() < _FLAT_MM:  # the place of the map's axes would hinge on rounding

@@ -24,6 +24,7 @@ _DEPTH_MM, _HEIGHT_MM = 16.0, 12.0  # below and above the expected outer surface
 _SAMPLE_MM = 0.4  # along a ray
 _FAR_APART_MM = 1.5  # between planes above which their stairs would show
 _BREAK_MM = 3.0  # without bone along a ray that is still diploe
+_FREE, _BONE, _NEITHER = 0, 1, 2  # what the corners of a cell have in common
 _BOUND_PX = 8.0  # up to which distances to an edge in a plane are told apart
 _EVERY = 4  # rays of the map from one that the coarse pass follows to the next
 _STRAY_MM = 4.0  # off the fit by which an outermost voxel counts half
@@ -114,11 +115,12 @@ def surface_radii(
     field = _field(bone, centre, rays[::8], level[::8])
     offsets = np.arange(-_DEPTH_MM, _HEIGHT_MM, _SAMPLE_MM)
     radii = np.full((2, len(rays)), np.nan)
-    start, step = field.to_voxel(centre), field.steps(rays)
+    cells, start, step = _cells(field.voxels), field.to_voxel(centre), field.steps(rays)
     for some in np.array_split(np.arange(len(rays)), len(rays) // 250 + 1):
         at = start[:, None, None] + step[some].T[..., None] * (level[some, None] + offsets)
-        values = ndimage.map_coordinates(field.voxels, at, order=1, mode="constant", cval=0.0)
-        radii[:, some] = _nearest_run(values, offsets)
+        in_bone = _is_bone(field.voxels, cells, at)
+        ends = [_crossing(field.voxels, at, offsets, *end) for end in _nearest_run(in_bone, offsets)]
+        radii[:, some] = np.where(in_bone.any(axis=1), ends, np.nan)
     outer, inner = (radii + level).reshape(2, *expected.shape)
     return outer, inner
 
@@ -128,7 +130,7 @@ def _field(bone: Volume, centre: NDArray, rays: NDArray, level: NDArray) -> Volu
     ends = np.concatenate([centre + rays * (level + d)[:, None] for d in (-_DEPTH_MM, _HEIGHT_MM)])
     part = bone.crop(box_around(bone.to_voxel(ends), bone.shape, margin=2))
     if bone.spacing[0] <= _FAR_APART_MM:
-        return Volume(part.voxels.astype(np.float32), part.affine)
+        return Volume(part.voxels.view(np.uint8), part.affine)
     # distances to the edge in each plane, px: 1 on its inside and 0 on its outside; bone ends with the box
     mask = np.pad(part.voxels, ((0, 0), (1, 1), (1, 1)))
     field = (plane_distances(mask, _BOUND_PX) + np.where(mask, 0.0, 1.0))[:, 1:-1, 1:-1]
@@ -136,11 +138,41 @@ def _field(bone: Volume, centre: NDArray, rays: NDArray, level: NDArray) -> Volu
     return Volume(field.astype(np.float32), part.affine)
 
 
-def _nearest_run(values: NDArray, offsets: NDArray) -> tuple[NDArray, NDArray]:
-    """Offsets where the run of bone nearest to 0 ends and begins on each ray, between samples; short breaks join."""
+def _cells(field: NDArray) -> NDArray[np.uint8]:
+    """What the cubes between eight neighbours of a field are: bone, free of it, or neither; those beyond it neither."""
+    bone, free = field > 0.5, field < 0.5
+    for axis in range(3):
+        low, high = ((slice(None),) * axis + (side,) for side in (slice(None, -1), slice(1, None)))
+        bone, free = bone[low] & bone[high], free[low] & free[high]
+    cells = np.full([n + 1 for n in field.shape], _NEITHER, np.uint8)
+    cells[1:-1, 1:-1, 1:-1][bone] = _BONE
+    cells[1:-1, 1:-1, 1:-1][free] = _FREE
+    return cells
+
+
+def _is_bone(field: NDArray, cells: NDArray[np.uint8], at: NDArray) -> NDArray[np.bool_]:
+    """Whether a field is above 0.5 at places (3, ...): between neighbours that agree without interpolation."""
+    corner = np.floor(at).astype(np.int32) + 1
+    for index, n in zip(corner, field.shape, strict=True):
+        np.clip(index, 0, n, out=index)
+    cell = cells[tuple(corner)]
+    bone, neither = cell == _BONE, cell == _NEITHER
+    bone[neither] = _sampled(field, at[:, neither]) > 0.5
+    return bone
+
+
+def _sampled(field: NDArray, at: NDArray) -> NDArray[np.float32]:
+    """A field between its voxels; 0 beyond them."""
+    return np.asarray(ndimage.map_coordinates(field, at, order=1, mode="constant", cval=0.0, output=np.float32))
+
+
+def _nearest_run(bone: NDArray[np.bool_], offsets: NDArray) -> tuple[tuple[NDArray, int], tuple[NDArray, int]]:
+    """The last and the first sample of the run of bone nearest to 0 on each ray, each with the way out of it.
+
+    Short breaks join.
+    """
     n = len(offsets)
     index = np.arange(n)
-    bone = values > 0.5
     breaks = int(_BREAK_MM / _SAMPLE_MM)
     none = -(10**6)
     # a run begins at bone that has none before it within a break, and ends where none follows
@@ -153,16 +185,12 @@ def _nearest_run(values: NDArray, offsets: NDArray) -> tuple[NDArray, NDArray]:
     # the run that ends nearest to the expected surface
     last = np.abs(np.where(finishes, offsets, np.inf)).argmin(axis=1)
     first = np.where(begins & (index <= last[:, None]), index, -1).max(axis=1)
-    rays = np.arange(len(bone))
-    empty = ~bone.any(axis=1)
-    inner = _crossing(values, offsets, rays, first, -1)
-    outer = _crossing(values, offsets, rays, last, +1)
-    return np.where(empty, np.nan, outer), np.where(empty, np.nan, inner)
+    return (last, +1), (first, -1)
 
 
-def _crossing(values: NDArray, offsets: NDArray, rays: NDArray, at: NDArray, side: int) -> NDArray[np.float64]:
-    """Where the field passes 0.5 between a bone sample and its neighbour on one side."""
-    beside = np.clip(at + side, 0, len(offsets) - 1)
-    here, there = values[rays, at], values[rays, beside]
+def _crossing(field: NDArray, at: NDArray, offsets: NDArray, end: NDArray, side: int) -> NDArray[np.float64]:
+    """Offset where a field passes 0.5 between a bone sample of each ray and its neighbour on one side."""
+    rays, beside = np.arange(len(end)), np.clip(end + side, 0, len(offsets) - 1)
+    here, there = (_sampled(field, at[:, rays, sample]) for sample in (end, beside))
     t = np.clip((here - 0.5) / np.maximum(here - there, 1e-6), 0, 1)
-    return offsets[at] + t * side * _SAMPLE_MM * (beside != at)
+    return np.asarray(offsets[end] + t * side * _SAMPLE_MM * (beside != end))

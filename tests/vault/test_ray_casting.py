@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy import ndimage
 
-from cranio_nb.vault.ray_casting import expected_radius, surface_radii
+from cranio_nb.vault.ray_casting import _cells, _is_bone, _sampled, expected_radius, surface_radii
 from cranio_nb.vault.ray_grid import RayGrid
 from cranio_nb.volume import Volume
 
@@ -51,3 +52,13 @@ def test_the_expected_radius_is_that_of_the_ball_and_outliers_do_not_bend_it():
         bone.with_voxels(voxels), CENTRE, GRID.directions, typical=78.0, degrees=np.zeros((41, 41)), hidden=nothing
     )
     assert np.abs(found - 78).max() < 1.5
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.float32])
+def test_cells_tell_bone_as_interpolation_does(kind):
+    rng = np.random.default_rng(4)
+    field = ndimage.gaussian_filter(rng.normal(size=(9, 12, 7)), 1) * 4 + 0.5
+    field = (field > 0.5).astype(kind) if kind == np.uint8 else field.astype(kind)
+    at = rng.uniform(-2, 14, (3, 60, 40))
+    at[:, :30] = np.rint(2 * at[:, :30]) / 2  # on voxels and midway between them
+    np.testing.assert_array_equal(_is_bone(field, _cells(field), at), _sampled(field, at) > 0.5)

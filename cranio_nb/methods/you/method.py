@@ -30,6 +30,7 @@ from skimage.measure import find_contours
 
 from ...errors import InputRefused
 from ...geometry import voxel_pieces
+from ...grid import true_indices
 from ...mesh import Mesh
 from ...opening import Opening
 from ...options import Option
@@ -228,7 +229,7 @@ def _entry(one: Membrane) -> dict[str, Any]:
 def _box(bone: Volume, opening: Opening, guides: NDArray) -> tuple[slice, slice, slice]:
     """Index box around the opening and the guides, with a margin."""
     # voxel indices of both, with a margin in mm on every side
-    index = np.concatenate([np.argwhere(opening.sheet.voxels), bone.to_voxel(guides)])
+    index = np.concatenate([true_indices(opening.sheet.voxels), bone.to_voxel(guides)])
     margin = _MARGIN / bone.spacing
     low = np.maximum(np.floor(index.min(axis=0) - margin).astype(int), 0)
     high = np.minimum(np.ceil(index.max(axis=0) + margin).astype(int) + 1, bone.shape)
