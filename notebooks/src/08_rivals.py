@@ -229,8 +229,8 @@ _ = film.set(n=12)
 # <summary>Answer</summary>
 #
 # By next to nothing: 2.53 mm on average with 24 points, 2.54 mm with 12, 2.62 mm with 3. None of the numbers printed
-# brings the mean below 2.53 mm or above 2.78 mm. The *largest* distance is another matter: 7.78 mm with 4 points, 7.02
-# mm with 10, and 5.13 to 5.22 mm with 3, 6, 8, 12 and 24. Where the shortest way between two points leaves the rim, the
+# brings the mean below 2.53 mm or above 2.78 mm. The *largest* distance is another matter: 8.25 mm with 4 points, 6.28
+# mm with 10, and 5.13 to 5.22 mm with 3, 6, 12 and 24. Where the shortest way between two points leaves the rim, the
 # fill starts from a wrong place, and more points do not always prevent that. The points only say where the rim is. What
 # is wrong is not the rim but what is *not asked*: that the fill leaves the rim in the direction of the bone.
 #

@@ -47,7 +47,7 @@ def test_design_json_is_closed_strict_and_true(done, case):
     assert set(record) == {
         *("cranio_nb", "not_for_clinical_use", "world", "load", "bone_threshold_hu", "openings", "method", "preset"),
         *("parameters", "slices", "slice_counts", "balloons", "findings", "measures", "mesh", "implant", "seconds"),
-        *("left_open", "versions"),
+        *("left_open", "versions", "case", "finished", "input_sha256"),
     }
     assert record["world"] == "DICOM LPS, mm" and record["not_for_clinical_use"] is True
     assert record["load"]["source"] == "DICOM" and record["load"]["shape"] == list(case.bone.shape)

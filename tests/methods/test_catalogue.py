@@ -201,11 +201,12 @@ def ranged(bone, openings, *, grow_px: 'Annotated[int, Option("How far.", 1, 5, 
     yield from ()
 
 
-def test_an_own_method_declares_ranges_and_keeps_them_in_another_process():
+def test_an_own_method_declares_ranges_and_keeps_them_in_another_process(monkeypatch):
     cn.add_method("mine", ranged)
     try:
         packed = transfer.pack_methods()
         catalogue.remove_method("mine")
+        monkeypatch.setattr(transfer, "_MADE", "of another process")
         transfer.unpack_methods(packed)
         assert catalogue.options_of("mine")["grow_px"].limits == "1 to 5 px"
         with pytest.raises(InputRefused, match="from 1 to 5 px"):

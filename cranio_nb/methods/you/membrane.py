@@ -25,6 +25,7 @@ from skimage.measure import points_in_poly
 from ...errors import InputRefused
 from ...mesh import Mesh
 
+_DIGITS = 6  # of places in the plane, mm: which triangles are Delaunay does not hinge on rounding
 _CLEAR = 0.6  # steps between the loop and the first points inside: then the loop's own edges are Delaunay
 
 
@@ -219,6 +220,7 @@ def join_membranes(outer: Membrane, inner: Membrane, outer_rim: Loop, inner_rim:
 def _triangles(loop: NDArray, step: float) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
     """Points in the plane, those of the loop first, and the triangles inside the loop, counter-clockwise."""
     # a lattice of equilateral triangles over the loop's box
+    loop = np.round(loop, _DIGITS)
     low, high = loop.min(axis=0), loop.max(axis=0)
     rows = np.arange(low[1], high[1], step * np.sqrt(0.75))
     cols = np.arange(low[0], high[0], step)

@@ -46,6 +46,7 @@ _LEANS = 0.5  # outward part of the normal from which a vertex belongs to the ou
 _DEAREST = 10.0  # times its length an edge costs a rim's path on the cut face, where it should not run
 _DEPTH_COUNTS = 0.1  # how much a mm along the line of sight counts against one across it when a partner is looked for
 _SMOOTH = (1.5, 3.0, 6.0, 12.0)  # mm along the rim: the first that leaves no kink in it
+_DIGITS = 6  # of lengths and costs that are compared: what is equal stays so in a turned header and on any machine
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,7 +152,7 @@ def find_guides(radius_map: RadiusMap, n_guides: int) -> NDArray[np.float64]:
     closed = np.concatenate([outline, outline[:1]])
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
     at = np.arange(n_guides) * along[-1] / n_guides
-    v, u = (np.rint(np.interp(at, along, c)).astype(int) for c in closed.T)
+    v, u = (np.rint(np.round(np.interp(at, along, c), _DIGITS)).astype(int) for c in closed.T)
     # each to the nearest ray with bone, and out along that ray to its outer surface
     unknown = radius_map.hole | ~np.isfinite(radius_map.outer)
     v, u = ndimage.distance_transform_edt(unknown, return_distances=False, return_indices=True)[:, v, u]
@@ -249,7 +250,7 @@ def _edge_graph(mesh: Mesh) -> sparse.csr_array:
     """Length of every edge, shape (V, V)."""
     a, b = mesh.faces[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2).T  # closed: every edge comes both ways
     length = np.linalg.norm(mesh.vertices[a] - mesh.vertices[b], axis=1)
-    length = np.round(length, 7)  # equal paths stay equal in a turned header
+    length = np.round(length, _DIGITS)
     return sparse.csr_array((length, (a, b)), shape=(len(mesh.vertices),) * 2)
 
 
@@ -281,7 +282,7 @@ def _nearest(places: NDArray, allowed: NDArray[np.bool_], wanted: NDArray) -> ND
     candidates = np.flatnonzero(allowed)
     if not len(candidates):
         raise InputRefused("NoRim", "No bone was found beside the guiding points.", "Place them on the rim.")
-    return candidates[cKDTree(places[candidates]).query(wanted)[1]]
+    return candidates[cKDTree(np.round(places[candidates], _DIGITS)).query(np.round(wanted, _DIGITS))[1]]
 
 
 def _path_loop(skull: Mesh, at: NDArray[np.intp], lean: NDArray[np.float64]) -> Loop:
@@ -290,6 +291,7 @@ def _path_loop(skull: Mesh, at: NDArray[np.intp], lean: NDArray[np.float64]) -> 
     graph = _edge_graph(skull)
     costs = graph.tocoo()
     costs.data *= np.clip(2 / (lean[costs.row] + lean[costs.col]).clip(1e-3), 1, _DEAREST)
+    costs.data = np.round(costs.data, _DIGITS)
     graph = costs.tocsr()
     way, stations = [], []
     # guide to guide; a vertex between guides k and k + 1 has a station between k and k + 1
