@@ -15,9 +15,8 @@ import os
 import time
 from pathlib import Path
 
-from skullfix import load
-
 from cranio_nb.pipeline.trial import Contender, attempt_apart, contenders
+from cranio_nb.readers import read_ct
 from cranio_nb.stages.segmentation import segment
 from cranio_nb.vault.opening_search import find_openings
 from cranio_nb.volume import Volume
@@ -58,7 +57,7 @@ def main() -> None:
     rivals = contenders(asked.methods)
     measure("phantom", phantom(asked.planes), rivals)
     if home := os.environ.get("CRANIO_NB_DATA"):
-        measure("SkullFix case 000", load(str(Path(home) / "skullfix/cases/000"))[0], rivals)
+        measure("SkullFix case 000", read_ct(Path(home) / "skullfix/cases/000/defective.nrrd", mask=True)[0], rivals)
 
 
 if __name__ == "__main__":
