@@ -189,7 +189,7 @@ def _findings(made: Prosthesis, mesh: MeshReport, openings: tuple[Opening, ...])
     }
     found = [Finding(c, "warning", text.format(n), {"count": n}) for c, (n, text) in candidates.items() if n]
     if mesh.n_parts != len(openings):
-        message = f"The prosthesis has {mesh.n_parts} separate parts for {len(openings)} openings."
+        message = f"Separate parts of the prosthesis: {mesh.n_parts}; openings that it closes: {len(openings)}."
         found.append(Finding("SeparateParts", "warning", message, {"parts": mesh.n_parts, "openings": len(openings)}))
     if mesh.wall_p1 < _THIN:
         message = f"The wall is thinner than {mesh.wall_p1:.1f} mm over 1 % of the surface."
