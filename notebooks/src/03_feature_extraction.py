@@ -41,7 +41,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # scan of a head is about as wide as ours, and then they are 0.45 mm, and ten points 4.5 mm. **So this course takes
 # them.** In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are 5 px here, and 10 px are 9 mm.
 #
-# *The switch:* `"full"` for the paper's size, or `classroom.load(scan="path/to/your/scan")`.
+# *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
+# scan of your own.
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
@@ -85,8 +86,8 @@ pictures.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.inn
 #
 # The hull reaches out to the middle line. What lies further out than the middle line is outside: the outer boundary,
 # **B - S** (B without S). What lies further in is in the hull: the inner boundary, **B ∩ S** (what B and S share). One
-# convex hull parts the curves, and nobody had to say where inside is. It works because a skull is nearly convex: a deep
-# dent of the bone would end up in the hull.
+# convex hull parts the curves, and nobody had to say where inside is. It works because a skull is nearly convex: in a
+# deep dent the outer boundary too would lie in the hull, and be taken for the inner one.
 #
 # </details>
 #
@@ -95,7 +96,7 @@ pictures.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.inn
 #
 # ## 2. The ends
 #
-# The gap ends where the skeleton ends. But a squarely cut bone has two corners there, and the skeleton forks into
+# The gap ends where the skeleton ends. But a squarely cut bone has two corners there, and the skeleton forks towards
 # both. Real bone adds spurs. So we take the **longest path** through the skeleton, measured along it. The path still
 # runs into one of the two corners. There it comes near the boundary: it is no longer in the middle. So we **cut off**
 # its end, up to the first point that lies nearly as deep in the bone as the path does further back.
@@ -119,13 +120,14 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # ## 3. The tangents
 #
 # At the very end of the bone the boundary turns round the corner into the cut face. Its direction there says nothing
-# about the skull. So the first pixels are left out (`skip`), and a line is fitted to the next ones (`reach`).
+# about the skull. So the first pixels are left out (`skip`), and a line is fitted to the next ones (`reach`). Both are
+# lengths along the skeleton.
 #
 # In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used. The
 # thin **black line** is the line that was fitted: it goes through the mean of the pixels used. The **green arrow** has
-# its direction, but starts at the white circle. theta0 and theta1 of the caption are the angles between the outer
-# arrows and the chord, the straight line between their two circles, each with the one to expect there, which section 4
-# explains.
+# its direction, but starts at the white circle. theta0 (at end 1) and theta1 (at end 2) of the caption are the angles
+# between the outer arrows and the chord, the straight line between their two circles, each with the one to expect
+# there, which section 4 explains. The caption counts the points of both ends together.
 #
 # **Predict, then move, then explain.** (No sliders? Use `panel.set(skip_mm=0)` in a new cell, and `reach_mm`, `plane`.)
 #
@@ -161,8 +163,9 @@ panel
 #
 # Mind one thing. The measured gap begins at the first pixel that is used. With a large `skip` it is *wider* than the
 # true one, and a wider gap in a round skull has steeper ends. This is no error. In a circle of radius R, the radius to
-# one end, half the chord L and the line from the centre to its middle form a right triangle: sin theta = L / (2 R). So
-# the angles to **expect** are the true ones with their sines scaled by L / true L.
+# one end, half the chord L and the line from the centre to its middle form a right triangle. Its angle at the centre is
+# theta, for the tangent is at right angles to the radius, and the chord to that line: sin theta = L / (2 R). So the
+# angles to **expect** are the true ones with their sines scaled by L / true L.
 
 
 # %%
@@ -195,7 +198,7 @@ def expected(case, plane, length):
 settings = ((0, 10), (5, 10), (10, 10), (5, 6), (5, 25), (5, 44))
 print(f"44 px are {44 * px:.0f} mm")
 true_length, (true0, true1) = truth(case, plane)
-print(f"true gap: L {true_length:.1f} px, theta0 {true0:.1f}, theta1 {true1:.1f}")
+print(f"true gap: L {true_length:.1f} px, theta0 {true0:.1f}, theta1 {true1:.1f} degrees")
 for skip, reach in settings:
     length, (theta0, theta1) = measured(case, bone, opening, plane, skip, reach)
     want0, want1 = expected(case, plane, length)
@@ -269,7 +272,8 @@ print("; ".join(each))
 # ## A mistake to make once
 #
 # Not every slice that the hole touches is an open ring: near its upper and lower end only part of the thickness is
-# missing, or nothing. A closed ring has no ends, and the package says so. (Lesson 05 has the paper's answer for these.)
+# missing, or nothing. A closed ring has no ends, and the package says so, here of a slice a little below the hole.
+# (Lesson 05 has the paper's answer for these.)
 
 # %% tags=["raises-exception"]
 closed = feature_extraction.extract_features(bone.voxels[opening.planes[0] - 4])
@@ -300,7 +304,8 @@ pictures.picture(fig, alt, f"{boundary(mask).sum()} boundary pixels")
 # %% [markdown]
 # **Exercise 3.2.** The tangent. Fit a line to points of shape (n, 2) and return its direction as (row, col). The fit
 # must work for lines in *any* direction, along a row and along a column too, so `np.polyfit` will not do: it measures
-# distances along one axis only. All points count: a single one may be off by 2 px.
+# distances along one axis only. Use all points, not two of them: any one may be off by 2 px. The arrow may point either
+# way.
 
 
 # %% tags=["solution"]
@@ -338,7 +343,7 @@ check.exercise("3.3", arc_length)
 # |---|---|---|
 # | B | `SliceFeatures.boundary` | px |
 # | skeleton | `SliceFeatures.skeleton` | px |
-# | S | `SliceFeatures.hull` | half-planes |
+# | S | `SliceFeatures.hull` | px, as half-planes |
 # | B - S, B ∩ S | `.outer`, `.inner` | px |
 # | 10 points | `feature_extraction.PAPER_SKIP_PX` | px |
 # | theta0, theta1 | `ChordFrame.end_angles` | rad |

@@ -92,7 +92,7 @@ EXERCISES: dict[str, Exercise] = {
             (_rolled_edge, "np.roll brings in the opposite border: what lies outside the image is not bone."),
             (
                 lambda b: b & ~ndimage.binary_erosion(b, np.ones((3, 3))),
-                "Use the cross of 4 neighbours; the square takes corners twice.",
+                "Use the cross of 4 neighbours; the square of 8 also takes pixels that touch by a corner.",
             ),
             (lambda b: ~ndimage.binary_erosion(b), "All the background is in it: keep what is bone and not inside."),
             (
