@@ -35,8 +35,9 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # | name | meaning | unit | paper |
 # |---|---|---|---|
 # | `min_area` | islands smaller than this are dropped | px | not given |
-# | `axial` | cut along the planes of the scan | | yes |
-# | `directions` | else: in how many directions the hole is cut | 1 | |
+# | `axial` | cut along the planes of the scan, or along fans (section 4) | yes or no | yes |
+# | `directions` | with fans: in how many directions the hole is cut | 1 | no fans |
+# | `coupling_mm` | with fans: how far neighbouring slices share tangents (section 5) | mm | no fans |
 #
 # *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
 # scan of your own.
@@ -125,7 +126,8 @@ alt = "Four views of one slice: CT, ring of bone, hull minus bone, and the dent 
 pictures.picture(fig, alt, f"patch {found.sum()} px, missing {lost[at].sum()} px")
 
 # %% [markdown]
-# This is the paper's Figure 6. A hull is straight where the bone was round, so not all of the missing pixels come back.
+# These are the four steps of the paper's Figure 6. A hull is straight where the bone was round, so not all of the
+# missing pixels come back.
 #
 # **Question.** When does the convex hull give the wrong answer?
 #
@@ -158,10 +160,11 @@ if case.truth is not None:
 # %% [markdown]
 # The paper had 23 slices with an opening, 3 of them by the hull and 20 by balloons.
 #
-# (HD95: 95 % of the distances between the two surfaces are smaller; lesson 07.) This is poor for a hole whose rim is
-# all there to be seen. It is not the filling that fails: the curves run inside the true ones. How far? We measure the
-# outer curve against the true one, above the true chord and away from its ends. One head is one draw, so we take two
-# more, of another shape and with other noise.
+# (Dice, of lesson 00, says how well the patch and the missing bone overlap: 1 is perfect. HD95: 95 % of the distances
+# between their surfaces are smaller; lesson 07.) Both are poor for a hole whose rim is all there to be seen. It is not
+# the filling that fails: the curves run inside the true ones. How far? We measure the outer curve against the true one,
+# above the true chord and away from its ends. One head is one draw, so we take two more, of another shape and with
+# other noise.
 
 # %%
 heads = [(case, bone, openings)]
@@ -230,8 +233,8 @@ for s in balloons[:2] + balloons[-3:]:
 # <summary>Answer</summary>
 #
 # At the upper and lower end of the hole, where the cutter leaves part of the thickness: there the ring is closed, the
-# hull fills a thin sickle or nothing, and where the balloon takes over the patch leaps. This is one source of the
-# staircase. The first two slices lie below the cut: nothing is missing there.
+# hull fills a thin sickle or nothing, and where the balloon takes over the patch leaps, and its surface has a step
+# (lesson 06 smooths such steps). The first two slices lie below the cut: nothing is missing there.
 #
 # The last slice with a balloon is bad: next to nothing is left of its patch. Its outer theta1 stands out among those
 # printed. More than 180 degrees means that the curve has to arrive from *inside* the head, so outer and inner curve
@@ -242,13 +245,14 @@ for s in balloons[:2] + balloons[-3:]:
 #
 # ## 4. Two causes
 #
-# Two things in the paper's preset fit one scan only.
+# Two of the paper's numbers fit one scan only.
 #
 # - **`skip`.** Ten points of 0.45 mm are 4.5 mm. Who counts ten points on our pixels leaves out 9 mm on each side, and
 #   a chord 9 mm longer in all must be bridged from farther away.
 # - **`k`.** A constant in px per index squared fits one width of gap (lesson 04).
 #
-# **Predict:** which of the two costs more here? And if both are mended, is anything left?
+# **Predict:** which of the two costs more here? And if both are mended, is anything left? (The *mean distance* is that
+# between the surfaces of the patch and of the missing bone, both ways.)
 
 
 # %%
@@ -283,16 +287,16 @@ for skip in (10 * px, 10 * 0.45):
 # Compare the rows in pairs. In each of the three heads both causes cost, and `k` costs more: mending `k` alone gains
 # more than mending `skip` alone (0.807 and 0.712 from 0.549 in the first), and mending both gains most (0.850), but
 # less than the sum of the two. The two are not independent: a shorter gap needs less height, so the weak constant does
-# less harm in it. What is left lies with single tangents.
+# less harm in it. What is left comes, in part, from single bad tangents like that of the last balloon above.
 #
 # </details>
 #
 # ### In which direction to slice?
 #
-# Nothing says that slices must be axial. A **fan** is a set of planes through one line inside the head, like the
-# pages of a half-open book whose back is that line; each page cuts the hole along another strip. The first fan runs
-# across the short side of the hole, where the way from bone to bone is shortest. Our default turns the fan into six
-# directions and takes a weighted mean.
+# Nothing says that slices must be axial. A **fan** is a set of planes through one line inside the head, like the pages
+# of a half-open book whose back is that line; each page cuts the hole along another strip. The first fan runs across
+# the short side of the hole, where the way from bone to bone is shortest. Our default turns the fan into six directions
+# and takes a mean, in which a slice counts more where it is the surer: near its rim, and on a short way.
 #
 # **Predict:** will one fan, across the short side, be enough? (Nine designs: the next cell takes some 15 seconds.)
 
@@ -320,10 +324,10 @@ print("from one to six the mean falls by", *(f"{gain:.2f} mm" for gain in one_wa
 #
 # ## 5. What helps at the ends
 #
-# The paper's Figure 7 fails by one wrong tangent at one end. Two things can mend that. Many directions are one: each
-# place of the patch is then made from several pairs of ends. The other is in the fans above already: neighbouring
-# slices of a fan **share** their tangents (`coupling_mm`), that is, each takes a weighted mean of its own and its
-# neighbours'.
+# In the paper's Figure 7 one wrong tangent, at one end, spoils a slice. Two things can mend that. Many directions are
+# one: each place of the patch is then made from several pairs of ends. The other is in the fans above already:
+# neighbouring slices of a fan **share** their tangents (`coupling_mm`), that is, each takes a weighted mean of its own
+# and its neighbours'.
 #
 # **Predict:** which of the two helps more? With one of them at work, does the other still help? (Six designs, some 10
 # seconds.)
@@ -360,6 +364,7 @@ assert agree == 1, f"only {agree:.0%} of the region is filled: the outline is a 
 # ## Exercises
 #
 # **Exercise 5.1.** The outline. Join two curves (n, 2) that run the same way into one outline that goes round once.
+# (The first point may be repeated at the end, but need not.)
 
 
 # %% tags=["solution"]
