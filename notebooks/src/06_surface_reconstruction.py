@@ -36,7 +36,7 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # | name | meaning | unit | paper |
 # |---|---|---|---|
 # | `smooth` | place vertices between the voxels | | no |
-# | `n_steps` | steps of the relaxation | 1 | |
+# | `n_steps` | steps of smoothing | 1 | no |
 #
 # *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
 # scan of your own.
@@ -94,9 +94,9 @@ print(f"volume: voxels {voxels_cm3:.2f} cm3, raw {raw.volume / 1000:.2f} cm3")
 # One plane high (2.5 mm) where the surface is nearly horizontal, one pixel deep (0.9 mm) where it is nearly vertical.
 #
 # Stairs also add area, however fine the voxels are: the faces of cubes add 41 % on a slope of 45 degrees. Marching
-# cubes cuts the corners of the steps, so it adds nothing at 45 degrees and 8 % on a slope of 1 in 2. Flat voxels do
-# it worse: here raw is 11 % more than smooth. Volume has no such flaw: the raw surface holds 16.89 of the voxels'
-# 16.99 cm3.
+# cubes cuts the corners of the steps, so it adds nothing at 45 degrees and 8 % on a slope of 1 in 2. Here, where voxels
+# are longer than wide, raw is 11 % more than smooth. Volume has no such flaw: the raw surface holds 16.89 of the
+# voxels' 16.99 cm3.
 #
 # </details>
 #
@@ -115,8 +115,8 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 
 # %% [markdown]
 # **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
-# leave the bound by taking very many? Where will the vertices pile up that are stopped by it?
-# (No sliders? Use `panel.set(steps=200)` in a new cell.)
+# leave the bound by taking very many? How far will those vertices have moved that are stopped by it (the bars beside
+# the mesh count vertices by the way they moved)? (No sliders? Use `panel.set(steps=200)` in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.surface(patch)
@@ -204,8 +204,9 @@ cn.save(cn.Prosthesis(skin, made.sides, None, made.method), folder)
 # %% [markdown]
 # ## Exercises
 #
-# **Exercise 6.1.** The volume of a closed mesh. Each face and the origin make a tetrahedron of (signed) volume
-# a . (b x c) / 6. Add them up and keep the sign: a mesh turned inside out has a negative volume.
+# **Exercise 6.1.** The volume of a closed mesh. Each face and the origin make a tetrahedron of (signed) volume a . (b x
+# c) / 6, with a, b, c the corners of the face in their order. Add them up and keep the sign: a mesh turned inside out
+# has a negative volume.
 
 
 # %% tags=["solution"]

@@ -34,8 +34,9 @@ from cranio_nb.teaching import check, classroom, widgets
 #
 # None to tune: an evaluation that can be tuned is none.
 #
-# *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, for this lesson needs
-# a truth: `classroom.load(scan="path/to/your/scan", truth="path/to/its/truth.nii.gz")`.
+# *The switch:* `classroom.load("full", needs_truth=True)` takes a head of the paper's size; or a scan of your own whose
+# missing bone is known, for this lesson needs a truth: `classroom.load(scan="path/to/your/scan",
+# truth="path/to/its/truth.nii.gz")`.
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class", needs_truth=True)
@@ -85,11 +86,12 @@ for side, code in against_truth.SIDES.items():
 # <details>
 # <summary>Answer</summary>
 #
-# At the rim: all of the largest lie within 3.3 mm of bone, where one voxel more or less of slanted bone decides.
-# One would expect the middle to be worst, for it is farthest from any bone, and one wrong tangent (lesson 05) does
-# most harm there. But here six directions are averaged, and the middle is one of the *best* places: 0.07 mm off, where
-# the mean is 0.14 mm. The inner side is a little worse on average here (0.18 against 0.14 mm); the single worst node
-# lies on the outer side (1.91 against 1.05 mm).
+# At the rim: all of the largest (more than 0.7 of the maximum) lie within 3.3 mm of bone, where one voxel more or less
+# of slanted bone decides. (The colours end at 0.7 mm: the bright spot further in is not half as far off as the worst
+# node, the circle at the rim.) One would expect the middle to be worst, for it is farthest from any bone, and one wrong
+# tangent (lesson 05) does most harm there. But here six directions are averaged, and the middle is one of the *best*
+# places: 0.07 mm off, where the mean is 0.14 mm. The inner side is a little worse on average here (0.18 against 0.14
+# mm); the single worst node lies on the outer side (1.91 against 1.05 mm).
 #
 # </details>
 #
