@@ -45,7 +45,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # The synthetic head is made of hard bone of 1200 HU, spongy bone of 650 HU and soft tissue of 50 HU
 # (`data_synth.phantom`).
 #
-# *The switch:* `"full"`, or `classroom.load(scan="path/to/your/scan")`.
+# *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
+# scan of your own.
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")

@@ -44,7 +44,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # | `dt` | dt | time step | 1 | not given |
 # | `tol` | | stop when the curve moves less | px | 0.001 |
 #
-# *The switch:* `"full"` for the paper's size, or `classroom.load(scan="path/to/your/scan")`.
+# *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
+# scan of your own.
 
 # %%
 case = classroom.load("class")

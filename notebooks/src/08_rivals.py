@@ -41,8 +41,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # | reflection | `partial` | copy what can be copied, leave the rest open | | no |
 # | You et al. | `n_guides` | guiding points around the hole | 1 | 12 |
 #
-# *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, as in lesson 07. The
-# numbers in the answers are those of `"class"`.
+# *The switch:* `classroom.load("full", needs_truth=True)` takes a head of the paper's size; or a scan of your own whose
+# missing bone is known, as in lesson 07. The numbers in the answers are those of `"class"`.
 
 # %%
 case = classroom.load("class", needs_truth=True)
