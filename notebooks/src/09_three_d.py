@@ -43,8 +43,8 @@ from cranio_nb.vault import radius_measurement
 # | D-NURBS | `wavelength_mm` | ripples of this length are halved | mm | 20 |
 # | D-NURBS | `span_mm` | between the knots, where the sheet's pieces meet | mm | 8 |
 #
-# *The switch:* `"full"` for the paper's size; or a scan of your own whose missing bone is known, as in lesson 07. The
-# numbers in the answers are those of `"class"`.
+# *The switch:* `classroom.load("full", needs_truth=True)` takes a head of the paper's size; or a scan of your own whose
+# missing bone is known, as in lesson 07. The numbers in the answers are those of `"class"`.
 
 # %%
 case = classroom.load("class", needs_truth=True)
@@ -67,9 +67,9 @@ half = (len(vault.outer) // 2 + 0.5) * vault.step_mm
 maps = {"outer radius (mm)": vault.outer, "thickness (mm)": vault.outer - vault.inner}
 for ax, (name, values) in zip(panels, maps.items(), strict=True):
     beside = np.where(vault.hole, np.nan, values)
-    shown = ax.imshow(beside, cmap="cividis", extent=(-half, half, half, -half))
+    shown = ax.imshow(beside, cmap="cividis", origin="lower", extent=(-half, half, -half, half))
     fig.colorbar(shown, ax=ax)
-    ax.set(title=name, xlabel="mm", ylabel="mm")
+    ax.set(title=name, xlabel="front to back (mm)", ylabel="upwards (mm)")
 alt = "Two maps of the vault around the hole, which is white: outer radius, and thickness."
 n = len(vault.outer)
 pictures.picture(fig, alt, f"{n} x {n} rays, {vault.step_mm:.2f} mm apart")
@@ -90,6 +90,8 @@ print(f"radius of the map's mm: {vault.step_mm / vault.grid.step_rad:.0f} mm")
 print(f"radius of the missing bone: {away.min():.0f} to {away.max():.0f} mm")
 
 # %% [markdown]
+# (In the white corner, far from the hole, no vault was found. The fine rings are steps of one voxel.)
+#
 # A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
 # no better than flat starts from a sphere. (The flat fill of lesson 08 started from a plane.)
 #
@@ -101,10 +103,11 @@ print(f"radius of the missing bone: {away.min():.0f} to {away.max():.0f} mm")
 # First in one dimension. Of all curves g, take the one that lies close to the data f where there are data (w = 1, else
 # 0) and bends least:
 #
-# sum w (g - f)^2 + a^(2 n) sum (D^n g)^2,   D^n the n-th difference.
+# sum w (g - f)^2 + a^(2 n) sum (D^n g)^2,   D^n the n-th difference, n the *order*, values 1 mm apart.
 #
-# Setting the derivative to zero gives (W + a^(2 n) D^T D) g = W f. The length a says over what distance data are
-# smoothed. What costs nothing shows what a plate wants to be: a straight line for n = 2, a parabola for n = 3.
+# Setting the derivative to zero gives (W + a^(2 n) D^T D) g = W f, with the weights w on the diagonal of W and D^n
+# written as a matrix D (exercise 9.1). The length a says over what distance data are smoothed. What costs nothing shows
+# what a plate wants to be: a straight line for n = 2, a parabola for n = 3.
 #
 # **Predict:** a bow with a gap of 50 mm, bone on 25 mm beside it, measured with a noise of 0.2 mm. Which order comes
 # out too low for a large a? And which suffers most from the noise for a small one?
@@ -151,10 +154,10 @@ for name, off in bridges.items():
 # the 200 draws. Most of all the third order with a = 2 mm suffers from the noise: it keeps the rim's curvature, and
 # carries the rim's bumps across the gap as well, up to 4.98 mm off. One draw would have told you next to nothing here.
 #
+# </details>
+#
 # Over all draws there is an exact answer, as g is a matrix times the data: what it makes of the true bow (bias), and of
 # noise of 0.2 mm (spread). Now with both orders in one energy, lengths a and b; 0 leaves an order out:
-#
-# </details>
 
 # %% tags=["nbval-check-output"]
 D2, D3 = (np.diff(np.eye(len(x)), order, axis=0) for order in (2, 3))
@@ -177,11 +180,19 @@ second, third = (
 )
 print(f"least root of bias^2 + spread^2: a = {second:.1f} mm alone, b = {third:.1f} mm alone")
 
+# %% tags=["nbval-check-output"]
+# the bias of a = 8.5, b = 11 mm in two parts: what each order's own term adds to it
+terms = {"second": 8.5**4 * D2.T @ D2, "third": 11**6 * D3.T @ D3}
+both = np.linalg.solve(W + sum(terms.values()), np.eye(len(x))[50])
+for which, term in terms.items():
+    print(f"a = 8.5, b = 11 mm: the {which} order adds {-both @ term @ bow:+.2f} mm")
+
 # %% [markdown]
 # With 10 mm the second order is 0.76 mm too low and the third 0.75 mm too high (a bow is no parabola). A weak second
 # order (a = 2 mm) is too *high*: it keeps the rim's slope as well, and a curve with the right height and slope at both
 # ends lies a little over a circle. The best lengths for one order alone, by trial, are 8.5 and 6 mm. Both together, at
-# 8.5 and 11 mm, have hardly any bias and a small spread: where the two err in opposite directions, the errors cancel.
+# 8.5 and 11 mm, have hardly any bias and a small spread: in their common system the second order pulls the middle down
+# by 0.44 mm and the third up by 0.42 mm, and the errors cancel.
 #
 # These lengths were found with the truth at hand: they are the best for *this* bow, this gap, this noise, and no more.
 # The last row is what section 3 will use, and it would do badly here. Why the two differ, we try there.
@@ -222,9 +233,9 @@ _ = plate.set(second_mm=1.3, third_mm=1.8, mirror_mm=1.6)
 # On the map the hole lies in a valley: the temple is nearer to the eye than what is around it. The second order wants
 # the map flat and fills the valley: 1.63 mm too high on average. The third continues the curvature that it finds at the
 # rim, bumps and all: 0.83 mm too deep. Both: 0.16 mm too deep, and with the mirrored side 0.06 mm. This head is smooth,
-# so a weak second order alone does as well (rms, the root of the mean square: 0.22 mm against 0.24 mm); a real rim has
-# more bumps, and a larger hole more to guess. With nothing asked for there is a lid at the mean radius, up to 9.94 mm
-# off.
+# so a weak second order alone does as well (rms, the root of the mean square: 0.22 mm against 0.24 mm), and what the
+# other terms are worth on real ones it cannot tell. With nothing asked for there is a lid at the mean radius, up to
+# 9.94 mm off.
 #
 # </details>
 #
@@ -255,8 +266,8 @@ for a, b in ((1.3, 1.8), (8.5, 11)):
 # that bends the same way everywhere, and their two errors cancel. On the map a piece of sphere is flat already, and
 # what is left to be carried into the hole are the short bends of a valley. Long lengths smooth just those away, before
 # the plate sees them: the bone beside the hole is 0.18 mm off, where the package's own leave 0.06 mm. And the same
-# noise moves the plate by 0.25 mm at most where it moved the bow by 0.84 mm (section 2): the rim holds a plate all
-# round.
+# noise moves the plate by 0.25 mm at most (rms over the hole) where it moved the middle of the bow by 0.84 mm (section
+# 2). One reason: the rim holds a plate all round.
 #
 # So 1.3, 1.8 and 1.6 mm are no constants of nature, but the package's defaults. Being short, they follow the bone
 # beside the hole closely, noise included: the less noise there is in the scan, the better for them. Do not choose them
@@ -270,11 +281,12 @@ for a, b in ((1.3, 1.8), (8.5, 11)):
 # rays, and keeps them as samples of a Gaussian process: each radius has a mean, and each pair of radii a covariance.
 # For a skull with a hole, the known radii y give the missing ones as the *conditional mean*
 #
-# f* = mu* + C* (C + n^2 I)^-1 (y - mu),
+# f* = mu* + C* (C + s^2 I)^-1 (y - mu),
 #
-# one linear system again (C the covariance, n the noise of a radius). With `prior="prior.npz"` these radii f* are where
-# the plate starts: the energy now has the bending of the difference h = g - f* in place of that of g, and inside the
-# hole k |h|^2 besides, weak springs that pull the plate to f*.
+# one linear system again. mu and mu* are the means of the known and of the missing radii, C the covariance of the known
+# ones with each other, C* that of the missing with the known, s the noise of a radius. With `prior="prior.npz"` these
+# radii f* are where the plate starts: the energy now has the bending of the difference h = g - f* in place of that of
+# g, and inside the hole k |h|^2 besides, weak springs that pull the plate to f*.
 #
 # **Question.** The springs have one strength k everywhere. Why do they hardly act in a burr hole, but decide in a wide
 # one? (How does the force that bends a plate by 1 mm change with the plate's size?) Here is a test: the bone around a
@@ -308,15 +320,17 @@ for size in (15, 30, 50, 70, 100):
 #
 # A surface of D-NURBS ("dynamic non-uniform rational B-splines") is a weighted mean of control points p,
 #
-# s(u, v) = sum w_ij p_ij B_i(u) B_j(v) / sum w_ij B_i(u) B_j(v),
+# s(u, v) = sum w_ij p_ij B_i(u) B_j(v) / sum w_ij B_i(u) B_j(v),   u and v the place on the sheet,
 #
-# and a body with mass: the control points obey Newton's law,
+# where each B is a bump of cubic pieces that is 0 but for a few spans between knots, so a control point moves the sheet
+# near itself only. It is a body with mass: the control points obey Newton's law,
 #
 # M p'' + D p' + K p = f.
 #
-# M is the mass, D the friction, K the stiffness of a thin plate, f the pull of springs to the bone around the hole. It
-# is the balloon of lesson 04 with one dimension more, with inertia, and without a pressure. Ours has a *natural shape*:
-# the sphere that fits the bone best is free of stress, and bending is counted from there.
+# A dash is a derivative in time. M is the mass, D the friction (not the differences of section 2), K the stiffness of a
+# thin plate, f the pull of springs to the bone around the hole. It is the balloon of lesson 04 with one dimension more,
+# with inertia, and without a pressure. Ours has a *natural shape*: the sphere that fits the bone best is free of
+# stress, and bending is counted from there.
 #
 # **Predict, then move, then explain.** The sheet is pushed into the head and let go. Does a heavier sheet, or one with
 # more friction, come to rest elsewhere? Does a stiffer one? And where do the control points lie, on the sheet?
@@ -340,7 +354,7 @@ for moved in ({"step": 1}, {"step": 40}, {"mass": 3}, {"mass": 1, "wavelength_mm
 # steps to the same energy. The stiffer sheet comes to rest elsewhere, 2.08 mm too high, as it keeps more of its sphere
 # than the springs would like. And the control points lie off the sheet, on the outer side of a dome: only those at the
 # corners are on it. This sheet has few springs and wide spans, for speed; the method `dnurbs` has more of both, and as
-# its weights are frozen, it goes to rest by one solve instead of by steps.
+# its weights w_ij stay at 1, it goes to rest by one solve instead of by steps.
 #
 # </details>
 #
@@ -460,7 +474,7 @@ pictures.picture(fig, alt, f"order 3: {np.abs(lines['order 3']).max():.3f} mm of
 # %% [markdown]
 # **Exercise 9.3.** A rational curve. `points` (3, 2) are control points, `weights` (3,) their weights, `t` (k,)
 # parameters from 0 to 1. With B = (1 - t)^2, 2 t (1 - t), t^2 return the points sum w_i B_i p_i / sum w_i B_i, shape
-# (k, 2). With the weights 1, 1 / sqrt 2, 1 three points make a quarter of a circle, exactly.
+# (k, 2). With the weights 1, 1 / sqrt 2, 1 three corners of a square make a quarter of a circle, exactly.
 
 
 # %% tags=["solution"]
