@@ -181,11 +181,12 @@ second, third = (
 print(f"least root of bias^2 + spread^2: a = {second:.1f} mm alone, b = {third:.1f} mm alone")
 
 # %% tags=["nbval-check-output"]
-# the bias of a = 8.5, b = 11 mm in two parts: what each order's own term adds to it
-terms = {"second": 8.5**4 * D2.T @ D2, "third": 11**6 * D3.T @ D3}
+# the last bias but one in two parts: what each order's own term adds to it
+a, b = 8.5, 11
+terms = {"second": a**4 * D2.T @ D2, "third": b**6 * D3.T @ D3}
 both = np.linalg.solve(W + sum(terms.values()), np.eye(len(x))[50])
 for which, term in terms.items():
-    print(f"a = 8.5, b = 11 mm: the {which} order adds {-both @ term @ bow:+.2f} mm")
+    print(f"a = {a}, b = {b} mm: the {which} order adds {-both @ term @ bow:+.2f} mm")
 
 # %% [markdown]
 # With 10 mm the second order is 0.76 mm too low and the third 0.75 mm too high (a bow is no parabola). A weak second
@@ -266,8 +267,8 @@ for a, b in ((1.3, 1.8), (8.5, 11)):
 # that bends the same way everywhere, and their two errors cancel. On the map a piece of sphere is flat already, and
 # what is left to be carried into the hole are the short bends of a valley. Long lengths smooth just those away, before
 # the plate sees them: the bone beside the hole is 0.18 mm off, where the package's own leave 0.06 mm. And the same
-# noise moves the plate by 0.25 mm at most (rms over the hole) where it moved the middle of the bow by 0.84 mm (section
-# 2). One reason: the rim holds a plate all round.
+# noise moves the plate by 0.25 mm at most (rms over the hole) where it moved the middle of the bow by 0.84 mm
+# (section 2). One reason: the rim holds a plate all round.
 #
 # So 1.3, 1.8 and 1.6 mm are no constants of nature, but the package's defaults. Being short, they follow the bone
 # beside the hole closely, noise included: the less noise there is in the scan, the better for them. Do not choose them
