@@ -1,5 +1,7 @@
 """A sheet in motion: its energy falls, it comes to rest, and rest is where the energy is least."""
 
+from itertools import islice
+
 import numpy as np
 import pytest
 from scipy import sparse
@@ -7,7 +9,7 @@ from sheets import MATERIAL, SHAPE, SPANS
 
 from cranio_nb.methods.dnurbs import sheet, sheet_motion
 from cranio_nb.methods.dnurbs.sheet import Sheet, Springs
-from cranio_nb.methods.dnurbs.sheet_motion import Dynamics, Setting
+from cranio_nb.methods.dnurbs.sheet_motion import Dynamics, Setting, _moving, _moving_frozen
 
 
 def test_the_gauss_points_weigh_as_much_as_the_sheet_is_wide(setting):
@@ -47,6 +49,19 @@ def test_a_frozen_sheet_comes_to_rest_where_one_solve_puts_it(wild, setting, mas
     assert (np.diff([still.energy, *energies]) <= 1e-12 * still.energy).all()
     again = sheet_motion.relax(sheet_motion.start(rest, setting, dynamics), setting, dynamics, tol=1e-9)
     assert again.n_iter == 1 and again.moved < 1e-9  # rest is a fixed point
+
+
+@pytest.mark.parametrize("weight", [1.0, 2.5])
+def test_a_frozen_sheet_moves_as_the_equations_of_motion_say_step_by_step(wild, setting, weight):
+    """The swing about the known place of rest, and the steps that ask for the forces at each place."""
+    dynamics = Dynamics(mass=3.0, damping=0.5)
+    weights = np.linspace(1.0, weight, wild.weights.size).reshape(SHAPE)
+    still = sheet_motion.start(Sheet(wild.control, weights), setting, dynamics)
+    known, stepped = (motions(still, setting, dynamics, 0.0) for motions in (_moving_frozen, _moving))
+    for found, wanted in islice(zip(known, stepped, strict=False), 6):
+        np.testing.assert_allclose(found.sheet.control, wanted.sheet.control, atol=1e-8)
+        assert (found.energy, found.moved) == pytest.approx((wanted.energy, wanted.moved), rel=1e-9)
+        assert found.n_iter == wanted.n_iter
 
 
 @pytest.mark.parametrize(("mass", "damping"), [(1e6, 1.0), (0.0, 1e6)])
