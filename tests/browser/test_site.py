@@ -62,6 +62,14 @@ def test_every_link_leads_to_a_file_of_the_site(site):
                 assert (path.parent / link.split("#")[0].split("?")[0]).exists(), (path.name, link)
 
 
+def test_each_page_has_one_title_and_parts_of_different_names(site):
+    for path in site.rglob("*.html"):
+        page = Page(path.read_text())
+        assert len(page.all("h1")) == 1, path.name
+        names = [tag.get("aria-label") for tag in page.all("aside")]
+        assert all(names) and len(set(names)) == len(names), path.name
+
+
 def test_no_style_and_no_script_fetches_from_elsewhere(site):
     for path in [*site.rglob("*.css"), *site.rglob("*.js")]:
         if path.name not in ("searchtools.js",):  # asks for summaries, which are turned off
