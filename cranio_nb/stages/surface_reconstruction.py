@@ -231,9 +231,20 @@ def smoothed(stairs: Stairs, relaxed: NDArray[np.float64]) -> Mesh:
     Mesh
         World mm.
     """
-    # where the patch is thin the relaxed surface may cross itself
-    kept = _keep_volume(relaxed, stairs.raw, stairs.faces, stairs.part)
-    return stairs.mesh_at(_untangled(kept, stairs.start, stairs.faces, stairs.thin))
+    # where the patch is thin the relaxed surface may cross itself: there vertices go back to where nothing crosses
+    x, start, faces = _keep_volume(relaxed, stairs.raw, stairs.faces, stairs.part), stairs.start, stairs.faces
+    watched = faces[stairs.thin[faces].any(axis=1)]
+    for _ in range(_UNTANGLE_STEPS):
+        # bad faces and all faces that share a vertex with them
+        part = Mesh(x, watched)
+        bad = np.union1d(crossings(part), np.flatnonzero(part.areas < _SLIVER))
+        if not len(bad):
+            return stairs.mesh_at(x)
+        tangled = np.zeros(len(x), bool)
+        tangled[watched[bad]] = True
+        tangled[watched[tangled[watched].any(axis=1)]] = True  # and their neighbours
+        x[tangled] = start[tangled]
+    return stairs.mesh_at(start)
 
 
 def measure_deviation(raw: Mesh, smooth: Mesh) -> Deviation:
@@ -308,20 +319,3 @@ def _thin(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
     wide = np.pad(inside, 2)
     thin = wide & ~ndimage.binary_opening(wide, cube) | ~wide & ~ndimage.binary_opening(~wide, cube)
     return ndimage.binary_dilation(thin[2:-2, 2:-2, 2:-2], np.ones((3, 3, 3), bool), iterations=2)
-
-
-def _untangled(x: NDArray, start: NDArray, faces: NDArray[np.intp], thin: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Put vertices back to `start`, where nothing crosses, until no faces at thin places cross or collapse."""
-    x = x.copy()
-    watched = faces[thin[faces].any(axis=1)]
-    for _ in range(_UNTANGLE_STEPS):
-        # bad faces and all faces that share a vertex with them go back
-        part = Mesh(x, watched)
-        bad = np.union1d(crossings(part), np.flatnonzero(part.areas < _SLIVER))
-        if not len(bad):
-            return x
-        tangled = np.zeros(len(x), bool)
-        tangled[watched[bad]] = True
-        tangled[watched[tangled[watched].any(axis=1)]] = True  # and their neighbours
-        x[tangled] = start[tangled]
-    return start

@@ -48,7 +48,7 @@ def test_cells_keep_their_order_and_tags_below_the_one_for_colab(read):
     assert [cell.source.split("(")[0] for cell in tagged(notebook, "solution")] == ["def half"]
 
 
-@pytest.mark.parametrize("source", ["cranio-nb", "./cranio_nb-0.1-py3-none-any.whl", "git+https://a.org/b/c"])
+@pytest.mark.parametrize("source", ["cranio-nb", "./cranio_nb-0.1-py3-none-any.whl", "git+https://localhost/b/c"])
 def test_on_colab_pip_is_asked_for_what_it_understands(read, monkeypatch, source):
     asked = []
     monkeypatch.setitem(sys.modules, "google.colab", None)

@@ -39,7 +39,8 @@ from ...volume import Volume
 from ..piece import Piece
 from . import sheet, sheet_motion
 from .sheet import Material, Sheet, Springs
-from .sheet_motion import Dynamics, Motion, Setting
+from .sheet_energy import Dynamics, Setting
+from .sheet_motion import Motion
 
 ROUNDS = 5
 """Of weakening springs and settling again."""

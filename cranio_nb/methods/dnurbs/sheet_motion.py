@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from itertools import count, islice
 
 import numpy as np
@@ -34,73 +33,12 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse.linalg import splu, spsolve
 
-from .sheet import STRAINS, VALUE, Material, Sheet, Springs, gauss, scale_rows
-from .sheet_derivatives import Pair, derivatives, jacobians, rational_basis, scale_columns, spline_products
+from .sheet import STRAINS, VALUE, Sheet, scale_rows
+from .sheet_derivatives import derivatives, jacobians, rational_basis, scale_columns
+from .sheet_energy import Dynamics, Quadrature, Setting, potential, quadrature, stretched
 
 _LIGHTEST = 0.05  # a weight may not fall below
 _SHORTEST = 1e-6  # part of its time to which a step is shortened before the sheet counts as being at rest
-
-
-@dataclass(frozen=True)
-class Dynamics:
-    """How a sheet moves.
-
-    Parameters
-    ----------
-    dt : float
-        Time of a step.
-    mass, damping : float
-        mu and gamma, per unit of parameter area.
-    free_weights : bool
-        Whether weights move too.
-    hold : float
-        Constant of the springs that hold each free weight at 1.
-    """
-
-    dt: float = 1.0
-    mass: float = 1.0
-    damping: float = 1.0
-    free_weights: bool = False
-    hold: float = 1.0
-
-
-@dataclass(frozen=True, eq=False)
-class Setting:
-    """What acts on a sheet.
-
-    Parameters
-    ----------
-    springs : Springs
-    natural : Sheet
-        The shape without stress, of as many spans.
-    material : Material
-    """
-
-    springs: Springs
-    natural: Sheet
-    material: Material
-
-
-@dataclass(frozen=True, eq=False)
-class Quadrature:
-    """What the sums of the energy need of a setting, whatever the sheet's place.
-
-    Parameters
-    ----------
-    weight : ndarray, shape (k,)
-        Of the Gauss points.
-    splines : dict
-        (times by v, times by u) -> products of the B-splines at the Gauss points, sparse, shape (k, n m).
-    natural : dict
-        (times by v, times by u) -> the natural shape at the Gauss points, shape (k, 3), mm.
-    at_springs : dict
-        (0, 0) -> products of the B-splines at the springs.
-    """
-
-    weight: NDArray[np.float64]
-    splines: dict[Pair, sparse.csr_array]
-    natural: dict[Pair, NDArray[np.float64]]
-    at_springs: dict[Pair, sparse.csr_array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -138,32 +76,6 @@ class _Forces:
     matter: sparse.csr_array
     elastic: sparse.csr_array
     force: NDArray[np.float64]
-
-
-@lru_cache(maxsize=4)  # a motion asks for it at its start and again when it goes on
-def quadrature(setting: Setting) -> Quadrature:
-    """Prepare the sums of the energy over the Gauss points of all spans and over the springs.
-
-    Parameters
-    ----------
-    setting : Setting
-
-    Returns
-    -------
-    Quadrature
-    """
-    natural, springs = setting.natural, setting.springs
-    weight, splines = _gauss_products(natural.spans)
-    shape = derivatives(natural, rational_basis(natural.weights, splines))
-    at_springs = spline_products(springs.v, springs.u, natural.spans, (VALUE,))
-    return Quadrature(weight, splines, shape, at_springs)
-
-
-@lru_cache(maxsize=4)
-def _gauss_products(spans: tuple[int, int]) -> tuple[NDArray[np.float64], dict[Pair, sparse.csr_array]]:
-    """Weights of the Gauss points of all spans, and the products of the B-splines there."""
-    (v, by_v), (u, by_u) = (gauss(n) for n in spans)
-    return np.outer(by_v, by_u).ravel(), spline_products(np.repeat(v, len(u)), np.tile(u, len(v)), spans)
 
 
 def start(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> Motion:
@@ -275,31 +187,6 @@ def _frozen(
     return sparse.csc_array(matter), sparse.csc_array(elastic), pulled
 
 
-def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> float:
-    """Elastic energy of a sheet and of the springs.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    setting : Setting
-    dynamics : Dynamics
-    sums : Quadrature
-        Of the setting.
-
-    Returns
-    -------
-    float
-    """
-    shape, springs = derivatives(sheet, rational_basis(sheet.weights, sums.splines)), setting.springs
-    elastic = sum(
-        factor * float(sums.weight @ ((shape[d] - sums.natural[d]) ** 2).sum(axis=1))
-        for factor, d in zip(setting.material.stiffness, STRAINS, strict=True)
-    )
-    pulled = float(springs.strength @ (_stretched(sheet, springs, sums) ** 2).sum(axis=1))
-    held = dynamics.hold * float(((sheet.weights - 1) ** 2).sum()) if dynamics.free_weights else 0.0
-    return (elastic + pulled + held) / 2
-
-
 def _step(motion: Motion, forces: _Forces, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> Motion:
     """One step of the motion under the forces at its place, shortened where it must be."""
     sheet, free = motion.sheet, dynamics.free_weights
@@ -337,7 +224,7 @@ def _forces(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature
     pull = jacobians(sheet, at_springs, free_weights=free)[VALUE]
     strength = np.tile(springs.strength, 3)
     elastic = pull.T @ scale_rows(pull, strength)
-    force = pull.T @ (strength * _stretched(sheet, springs, sums).T.ravel())
+    force = pull.T @ (strength * stretched(sheet, springs, sums).T.ravel())
     # the sheet itself, against its natural shape
     basis = rational_basis(sheet.weights, sums.splines)
     parts, shape = jacobians(sheet, basis, free_weights=free), derivatives(sheet, basis)
@@ -350,11 +237,6 @@ def _forces(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature
         force = force - held * (_coordinates(sheet, True) - 1)
         elastic = elastic + sparse.diags_array(held)
     return _Forces(_gram(parts[VALUE], sums.weight), sparse.csr_array(elastic), force)
-
-
-def _stretched(sheet: Sheet, springs: Springs, sums: Quadrature) -> NDArray[np.float64]:
-    """From the place of each spring on the sheet to where it pulls, shape (k, 3), mm."""
-    return springs.points - derivatives(sheet, rational_basis(sheet.weights, sums.at_springs))[VALUE]
 
 
 def _gram(part: sparse.csr_array, weight: NDArray) -> sparse.csr_array:

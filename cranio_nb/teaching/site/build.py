@@ -149,7 +149,7 @@ def run_sphinx(source: Path, out: Path, trees: Path) -> None:
         text = path.read_text("utf-8")
         for part, named in _NAMED:
             text = text.replace(part, named)
-        path.write_text(text, "utf-8")
+        path.write_bytes(text.encode())
     # for machines that build upon each other's docs, and for the next build: nothing a reader needs
     for name in (".buildinfo", "objects.inv"):
         (out / name).unlink(missing_ok=True)

@@ -9,28 +9,15 @@ from sheets import MATERIAL, SHAPE, SPANS
 
 from cranio_nb.methods.dnurbs import sheet, sheet_motion
 from cranio_nb.methods.dnurbs.sheet import Sheet, Springs
-from cranio_nb.methods.dnurbs.sheet_motion import Dynamics, Setting, _moving, _moving_frozen
-
-
-def test_the_gauss_points_weigh_as_much_as_the_sheet_is_wide(setting):
-    assert sheet_motion.quadrature(setting).weight.sum() == pytest.approx(SPANS[0] * SPANS[1])
-
-
-def test_the_energy_is_that_of_the_stiffness_and_the_springs(wild, setting):
-    one = Sheet(wild.control, np.ones(SHAPE))
-    off = one.control.reshape(-1, 3) - setting.natural.control.reshape(-1, 3)
-    springs = setting.springs
-    pulled = springs.strength @ ((springs.points - one.at(springs.v, springs.u)) ** 2).sum(axis=1)
-    wanted = (np.sum(off * (sheet.stiffness(SPANS, MATERIAL) @ off)) + pulled) / 2
-    found = sheet_motion.potential(one, setting, Dynamics(), sheet_motion.quadrature(setting))
-    assert found == pytest.approx(wanted, rel=1e-12)
+from cranio_nb.methods.dnurbs.sheet_energy import Dynamics, Setting, potential, quadrature
+from cranio_nb.methods.dnurbs.sheet_motion import _moving, _moving_frozen
 
 
 def test_the_kronecker_stiffness_is_the_one_of_gauss_points(setting):
     """The fast path and the general one agree on K where weights are 1."""
     loose = Springs(np.zeros((1, 3)), np.ones(1), np.ones(1), np.zeros(1))
     soft = Setting(loose, setting.natural, MATERIAL)
-    elastic = sheet_motion._forces(setting.natural, soft, Dynamics(), sheet_motion.quadrature(soft)).elastic
+    elastic = sheet_motion._forces(setting.natural, soft, Dynamics(), quadrature(soft)).elastic
     wanted = sparse.block_diag([sheet.stiffness(SPANS, MATERIAL)] * 3)
     assert abs(elastic - wanted).max() < 1e-11
 
@@ -85,9 +72,9 @@ def test_free_weights_find_a_place_of_less_energy_that_is_a_least_one(setting):
         iter_callback=lambda m: energies.append(m.energy),
     )
     assert end.converged and (np.diff(energies) <= 1e-12 * energies[0]).all()
-    sums = sheet_motion.quadrature(setting)
-    least = sheet_motion.potential(end.sheet, setting, dynamics, sums)
-    assert least < sheet_motion.potential(rest, setting, dynamics, sums) - 1e-3
+    sums = quadrature(setting)
+    least = potential(end.sheet, setting, dynamics, sums)
+    assert least < potential(rest, setting, dynamics, sums) - 1e-3
     assert end.sheet.weights.min() > 0 and np.ptp(end.sheet.weights) > 0.1
     q = sheet_motion._coordinates(end.sheet, True)
     for i in (3, 90, 165, 180, 210):
@@ -95,4 +82,4 @@ def test_free_weights_find_a_place_of_less_energy_that_is_a_least_one(setting):
             sheet_motion._with_coordinates(q=q + s * np.eye(len(q))[i], sheet=end.sheet, free_weights=True)
             for s in (0.01, -0.01)
         ]
-        assert all(sheet_motion.potential(other, setting, dynamics, sums) > least for other in beside)
+        assert all(potential(other, setting, dynamics, sums) > least for other in beside)

@@ -16,7 +16,8 @@ from ....drawing.palette import BLACK, BONE, ORANGE, PROSTHESIS, SKY, WHITE
 from ....methods.dnurbs import method as dnurbs
 from ....methods.dnurbs import sheet_motion
 from ....methods.dnurbs.sheet import Sheet, Springs, settle
-from ....methods.dnurbs.sheet_motion import Dynamics, Motion, Setting
+from ....methods.dnurbs.sheet_energy import Dynamics, Setting
+from ....methods.dnurbs.sheet_motion import Motion
 from ....opening import Opening
 from ....prosthesis import Prosthesis
 from ....vault import radius_measurement

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.methods.dnurbs import method as dnurbs
-from cranio_nb.methods.dnurbs.sheet_motion import Dynamics
+from cranio_nb.methods.dnurbs.sheet_energy import Dynamics
 from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets.three_d.scene import thin_rays
 from cranio_nb.teaching.widgets.three_d.sheet import relax_sheet, settle_sheet
