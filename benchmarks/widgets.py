@@ -22,8 +22,6 @@ from cranio_nb.teaching import widgets
 from cranio_nb.teaching.widgets.live import stops_ahead
 from data_synth import phantom_case
 
-RIGIDITIES = (10.0, 40.0, 63.0, 5.0, 6.3, 8.0, 12.5, 16.0, 25.0, 31.5, 50.0, 80.0)  # mm: the wavelength halved
-
 
 def moves(values: list, repeats: int) -> Iterator:
     """Values to and fro, so that each one is a change."""
@@ -136,7 +134,9 @@ def slow_rows(
     for word in ("all new", "again"):
         yield f"bent_plate: a, {word}", measure(plate, "second_mm", lengths, len(lengths))
     sheet = widgets.elastic_sheet(bone, opening, true)
-    yield "elastic_sheet: rigidity, all new", measure(sheet, "wavelength_mm", list(RIGIDITIES), len(RIGIDITIES))
+    yield "elastic_sheet: one drawn ahead, at rest", draw_ahead(sheet)
+    rigidities = list(sheet.controls["wavelength_mm"].stops)
+    yield "elastic_sheet: rigidity, drawn ahead", measure(sheet, "wavelength_mm", rigidities, repeats)
     yield "elastic_sheet: step (the player)", measure(sheet, "step", [1, 2, 3, 4, 5, 6], repeats)
     tuned = widgets.tuner(phantom_case("tiny"))
     reaches = [6.0, 8.0, 12.0, 14.0]

@@ -70,8 +70,8 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     # on few rays; what holds the sheet is the same for all settings, and a motion is kept for each
     scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
     held = dnurbs.hold(scene.radius_map, scene.radius_map.outer, _SPAN)
-    setting = lru_cache(maxsize=16)(lambda wavelength_mm: settle_sheet(scene.radius_map, *held, wavelength_mm))
-    run = lru_cache(maxsize=16)(lambda wavelength_mm, **values: relax_sheet(setting(wavelength_mm), Dynamics(**values)))
+    setting = lru_cache(maxsize=32)(lambda wavelength_mm: settle_sheet(scene.radius_map, *held, wavelength_mm))
+    run = lru_cache(maxsize=32)(lambda wavelength_mm, **values: relax_sheet(setting(wavelength_mm), Dynamics(**values)))
     controls = (
         Slider("wavelength_mm", "wavelength that is halved: rigidity", 5, 80, 20, unit="mm", log=True, ahead=0),
         Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5, ahead=0),
@@ -84,7 +84,12 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     )
     presets = {"heavier": {"mass": 3.0}, "more friction": {"damping": 10.0}, "stiffer": {"wavelength_mm": 80.0}}
     return Panel(
-        controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, presets=presets, slow=True
+        controls,
+        lambda step, **values: _view(scene, run(**values), step),
+        alt=alt,
+        presets=presets,
+        slow=True,
+        ahead="wavelength_mm",
     )
 
 
