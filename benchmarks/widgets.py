@@ -19,6 +19,7 @@ from cranio_nb.drawing import figures
 from cranio_nb.evaluation import against_truth
 from cranio_nb.stages import feature_extraction
 from cranio_nb.teaching import widgets
+from cranio_nb.teaching.widgets.live import stops_ahead
 from data_synth import phantom_case
 
 
@@ -37,6 +38,12 @@ def measure(panel: widgets.Panel, control: str, values: list, repeats: int) -> n
         took.append(time.perf_counter() - start)
         assert shown.picture is not image
     return np.array(took)
+
+
+def draw_ahead(panel: widgets.Panel) -> np.ndarray:
+    """Seconds of each picture that is drawn while the kernel rests."""
+    stops = stops_ahead(panel)
+    return time_calls(lambda i: panel.picture(**panel.values | {panel.ahead: stops[i]}), len(stops))
 
 
 def time_calls(call: Callable[[int], object], repeats: int) -> np.ndarray:
@@ -105,11 +112,10 @@ def rows(size: str, repeats: int) -> Iterator[tuple[str, np.ndarray]]:
     true = against_truth.true_prosthesis(bone.with_voxels(case.implant), bone, opening.head_centre)
     shown = widgets.distances(made, true)
     yield "evaluation: scale", measure(shown, "top_mm", [0.5, 1.0, 2.0], repeats)
-    # the panels below keep what they have made: first each stop anew, then again
-    steps = list(range(1, 49))
+    # the panels below keep what they have made, and some of it is made while the kernel rests
     smooth = widgets.surface(made.patch)
-    yield "surface: steps, all new", measure(smooth, "steps", steps, min(repeats, 48))
-    yield "surface: steps, again", measure(smooth, "steps", steps, repeats)
+    yield "surface: one drawn ahead, at rest", draw_ahead(smooth)
+    yield "surface: steps, drawn ahead", measure(smooth, "steps", list(range(1, 49)), repeats)
     mirror = widgets.symmetry_plane(bone, opening)
     turns = np.arange(-5, 5, 0.5).tolist()
     yield "symmetry_plane: turn, all new", measure(mirror, "turn_deg", turns, repeats)
@@ -121,14 +127,16 @@ def slow_rows(
 ) -> Iterator[tuple[str, np.ndarray]]:
     """The panels that compute for long, and answer when a slider is let go: each setting anew, then again."""
     guides = widgets.guiding_points(bone, opening, true)
-    for word in ("all new", "again"):
-        yield f"guiding_points: n, {word}", measure(guides, "n", list(range(3, 12)), 9)
+    yield "guiding_points: one drawn ahead, at rest", draw_ahead(guides)
+    yield "guiding_points: n, drawn ahead", measure(guides, "n", list(range(3, 12)), repeats)
     plate = widgets.bent_plate(bone, opening, true)
     lengths = np.arange(2, 12, 0.5).tolist()
     for word in ("all new", "again"):
         yield f"bent_plate: a, {word}", measure(plate, "second_mm", lengths, len(lengths))
     sheet = widgets.elastic_sheet(bone, opening, true)
-    yield "elastic_sheet: rigidity, all new", measure(sheet, "wavelength_mm", [10.0, 40.0, 63.0], 3)
+    yield "elastic_sheet: one drawn ahead, at rest", draw_ahead(sheet)
+    rigidities = list(sheet.controls["wavelength_mm"].stops)
+    yield "elastic_sheet: rigidity, drawn ahead", measure(sheet, "wavelength_mm", rigidities, repeats)
     yield "elastic_sheet: step (the player)", measure(sheet, "step", [1, 2, 3, 4, 5, 6], repeats)
     tuned = widgets.tuner(phantom_case("tiny"))
     reaches = [6.0, 8.0, 12.0, 14.0]

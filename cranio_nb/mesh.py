@@ -88,8 +88,9 @@ class Mesh:
         ndarray, shape (F, 3)
             Zero for a face without area.
         """
-        lengths = self.areas[:, None]
-        return np.divide(self.area_vectors, lengths, out=np.zeros((len(self.faces), 3)), where=lengths > 0)
+        vectors = self.area_vectors
+        lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+        return np.divide(vectors, lengths, out=np.zeros((len(self.faces), 3)), where=lengths > 0)
 
     @cached_property
     def vertex_normals(self) -> NDArray[np.float64]:

@@ -128,7 +128,7 @@ def simulate(study: Study, seed: int = 0) -> Outcome:
 
 def table(studies: dict[str, Study], price: float) -> str:
     """A row for each study, as Markdown."""
-    head = ("", "Hours", "Core hours", "of them lost", "Storage busy", "Client busy", "Deaths", "Cost")
+    head = ("Run", "Hours", "Core hours", "of them lost", "Storage busy", "Client busy", "Deaths", "Cost")
     lines = [head, tuple("---:" if name else "---" for name in head)]
     for name, study in studies.items():
         o = simulate(study)

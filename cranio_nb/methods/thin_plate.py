@@ -29,6 +29,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from math import comb
 from pathlib import Path
 from typing import Annotated, Any
@@ -208,7 +209,7 @@ def _towards(like: Array, beside: NDArray[np.bool_], length: float) -> tuple[spa
     """The energy of second differences unlike those of another map: its matrix and its right-hand side."""
     # differences that touch an unknown place of the other map are left out
     known = np.isfinite(like)
-    differences = _differences(beside, 2)
+    differences = _differences(beside.tobytes(), beside.shape, 2)
     differences = differences[abs(differences) @ (~known).astype(float) == 0]
     # v: where the other side bends sharply (ridge, sinus), its bend is not copied
     wanted = differences @ np.where(known, like, 0.0)
@@ -220,14 +221,16 @@ def _towards(like: Array, beside: NDArray[np.bool_], length: float) -> tuple[spa
 
 def _stiffness(beside: NDArray[np.bool_], order: int, length: float) -> sparse.csr_array:
     """The energy length^(2 order) |D^order g|^2 as a matrix."""
-    differences = _differences(beside, order)
+    differences = _differences(beside.tobytes(), beside.shape, order)
     return (differences.T @ differences) * length ** (2 * order)
 
 
-def _differences(beside: NDArray[np.bool_], order: int) -> sparse.csr_array:
+@lru_cache(maxsize=4)  # both surfaces of an opening, and all lengths that a lesson tries, have the same nodes
+def _differences(beside: bytes, shape: tuple[int, int], order: int) -> sparse.csr_array:
     """All partial differences of an order that lie within the plate, each by the root of its multiplicity."""
     # |D^n g|^2 sums over all orders of the axes: the mixed parts count binomially often
-    index = np.where(beside, np.cumsum(beside).reshape(beside.shape) - 1, -1)
+    nodes = np.frombuffer(beside, bool).reshape(shape)
+    index = np.where(nodes, np.cumsum(nodes).reshape(shape) - 1, -1)
     parts = [_partial(index, order - i, i) * np.sqrt(comb(order, i)) for i in range(order + 1)]
     return sparse.vstack(parts).tocsr()
 

@@ -10,7 +10,10 @@ far apart, then it is relaxed towards least bending.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,6 +45,78 @@ class Deviation:
 
     mean_mm: float
     max_mm: float
+
+
+@dataclass(frozen=True, eq=False)
+class Stairs:
+    """The surface of a patch as marching cubes gives it, and what smoothing begins with, whatever its steps.
+
+    Parameters
+    ----------
+    part : Volume
+        The patch in its own box.
+    inside : ndarray of bool, shape (P, R, C)
+        The same with a border of one voxel.
+    raw : ndarray, shape (V, 3)
+        Vertices midway between voxels, index coordinates of `inside`.
+    faces : ndarray of int, shape (F, 3)
+    """
+
+    part: Volume
+    inside: NDArray[np.bool_]
+    raw: NDArray[np.float64]
+    faces: NDArray[np.intp]
+
+    @property
+    def mesh(self) -> Mesh:
+        """The stairs themselves.
+
+        Returns
+        -------
+        Mesh
+            World mm.
+        """
+        return self.mesh_at(self.raw)
+
+    def mesh_at(self, vertices: NDArray[np.float64]) -> Mesh:
+        """The same faces with their vertices elsewhere.
+
+        Parameters
+        ----------
+        vertices : ndarray, shape (V, 3)
+            Index coordinates of `inside`.
+
+        Returns
+        -------
+        Mesh
+            World mm, of positive volume.
+        """
+        mesh = Mesh(self.part.to_world(vertices - 1), self.faces)
+        return mesh if mesh.volume > 0 else Mesh(mesh.vertices, self.faces[:, ::-1].copy())
+
+    @cached_property
+    def start(self) -> NDArray[np.float64]:
+        """Each vertex on its edge between two voxels where the signed distance, linear along the edge, is zero.
+
+        Returns
+        -------
+        ndarray, shape (V, 3)
+            Index coordinates of `inside`.
+        """
+        field = _distance_field(self.inside, self.part)
+        low, high = np.floor(self.raw).astype(int), np.ceil(self.raw).astype(int)
+        here, there = field[tuple(low.T)], field[tuple(high.T)]
+        return low + (high - low) * (here / (here - there))[:, None]
+
+    @cached_property
+    def thin(self) -> NDArray[np.bool_]:
+        """Whether each vertex is where the surface could pass through itself.
+
+        Returns
+        -------
+        ndarray of bool, shape (V,)
+        """
+        return _thin(self.inside)[tuple(np.rint(self.raw).astype(int).T)]
 
 
 def extract_surface(patch: Volume, *, smooth: bool = True, n_steps: int = 24) -> Mesh:
@@ -82,24 +157,94 @@ def extract_surface(patch: Volume, *, smooth: bool = True, n_steps: int = 24) ->
     >>> len(mesh.faces), round(float(mesh.volume), 6)
     (8, 0.166667)
     """
+    stairs = find_stairs(patch)
+    return smoothed(stairs, next(islice(relaxations(stairs), n_steps, None))) if smooth else stairs.mesh
+
+
+def find_stairs(patch: Volume) -> Stairs:
+    """March cubes over a patch.
+
+    Parameters
+    ----------
+    patch : Volume
+        Bool mask.
+
+    Returns
+    -------
+    Stairs
+
+    Raises
+    ------
+    InputRefused
+        If the patch is empty (EmptyPatch).
+    """
     # the patch in its own box, with a border so that the surface closes
     box = patch.box()
     if not patch.voxels[box].size:
         raise InputRefused("EmptyPatch", "The patch has no voxels; a surface needs at least one.")
     part = patch.crop(box)
     inside = np.pad(part.voxels.astype(bool), 1)
+    vertices, faces, _, _ = marching_cubes(np.where(inside, np.float32(1), np.float32(-1)), 0.0, method="lorensen")
+    return Stairs(part, inside, vertices.astype(float), faces.astype(np.intp))
 
-    vertices, faces = _march_cubes(np.where(inside, 1.0, -1.0))
-    if smooth:
-        raw = vertices
-        # between the voxels by signed distance; the signs alone fix the faces
-        start, same_faces = _march_cubes(_distance_field(inside, part))
-        assert np.array_equal(faces, same_faces)
-        # least bending at the same volume; where the patch is thin the surface may now cross itself
-        relaxed = _keep_volume(_relax(start, raw, faces, n_steps), raw, faces, part)
-        vertices = _untangled(relaxed, start, faces, _thin(inside)[tuple(np.rint(raw).astype(int).T)])
-    mesh = Mesh(part.to_world(vertices - 1), faces)
-    return mesh if mesh.volume > 0 else Mesh(mesh.vertices, faces[:, ::-1].copy())
+
+def relaxations(stairs: Stairs) -> Iterator[NDArray[np.float64]]:
+    """Places of the vertices before the first step of the relaxation and after each, without end.
+
+    Parameters
+    ----------
+    stairs : Stairs
+
+    Yields
+    ------
+    ndarray, shape (V, 3)
+        Index coordinates of the padded patch.
+    """
+    raw, x = stairs.raw, stairs.start
+    # the bending energy |x - mean of neighbours|^2, by projected gradient with Nesterov's momentum
+    # (Beck and Teboulle 2009, doi 10.1137/080716542)
+    bend = _umbrella(len(raw), stairs.faces)
+    back = bend.T.tocsr()
+    ahead = x
+    t = 1.0  # Nesterov's sequence: the weight of the momentum is (t - 1) / t_new
+    while True:
+        yield x
+        # a step down the gradient, back into the boxes of half a voxel
+        new = np.clip(ahead - _GRADIENT_STEP * (back @ (bend @ ahead)), raw - _HALF_VOXEL, raw + _HALF_VOXEL)
+        # and ahead by the momentum
+        t_new = (1 + np.sqrt(1 + 4 * t * t)) / 2
+        ahead = new + (t - 1) / t_new * (new - x)
+        x, t = new, t_new
+
+
+def smoothed(stairs: Stairs, relaxed: NDArray[np.float64]) -> Mesh:
+    """The solid of a relaxation: of the same volume as the stairs, and without crossings.
+
+    Parameters
+    ----------
+    stairs : Stairs
+    relaxed : ndarray, shape (V, 3)
+        From `relaxations`.
+
+    Returns
+    -------
+    Mesh
+        World mm.
+    """
+    # where the patch is thin the relaxed surface may cross itself: there vertices go back to where nothing crosses
+    x, start, faces = _keep_volume(relaxed, stairs.raw, stairs.faces, stairs.part), stairs.start, stairs.faces
+    watched = faces[stairs.thin[faces].any(axis=1)]
+    for _ in range(_UNTANGLE_STEPS):
+        # bad faces and all faces that share a vertex with them
+        part = Mesh(x, watched)
+        bad = np.union1d(crossings(part), np.flatnonzero(part.areas < _SLIVER))
+        if not len(bad):
+            return stairs.mesh_at(x)
+        tangled = np.zeros(len(x), bool)
+        tangled[watched[bad]] = True
+        tangled[watched[tangled[watched].any(axis=1)]] = True  # and their neighbours
+        x[tangled] = start[tangled]
+    return stairs.mesh_at(start)
 
 
 def measure_deviation(raw: Mesh, smooth: Mesh) -> Deviation:
@@ -126,12 +271,6 @@ def measure_deviation(raw: Mesh, smooth: Mesh) -> Deviation:
     return Deviation(float(moved.mean()), float(moved.max()))
 
 
-def _march_cubes(field: NDArray) -> tuple[NDArray[np.float64], NDArray[np.intp]]:
-    """Vertices and faces of the zero level in index coordinates."""
-    vertices, faces, _, _ = marching_cubes(field.astype(np.float32), 0.0, method="lorensen")
-    return vertices.astype(float), faces.astype(np.intp)
-
-
 def _distance_field(inside: NDArray[np.bool_], grid: Volume) -> NDArray[np.float64]:
     """Signed distance in mm to the nearest voxel of the other kind, at the voxels next to the surface; else +-1."""
     # only voxels next to the surface decide where it passes
@@ -142,25 +281,6 @@ def _distance_field(inside: NDArray[np.bool_], grid: Volume) -> NDArray[np.float
     field[inner] = cKDTree(place_out).query(place_in)[0]
     field[outer] = -cKDTree(place_in).query(place_out)[0]
     return field
-
-
-def _relax(start: NDArray, raw: NDArray, faces: NDArray[np.intp], n_steps: int) -> NDArray[np.float64]:
-    """Lower the bending energy |x - mean of neighbours|^2 inside the boxes of half a voxel around `raw`.
-
-    Projected gradient with Nesterov's momentum (Beck and Teboulle 2009, doi 10.1137/080716542).
-    """
-    bend = _umbrella(len(raw), faces)
-    back = bend.T.tocsr()
-    x = ahead = start
-    t = 1.0  # Nesterov's sequence: the weight of the momentum is (t - 1) / t_new
-    for _ in range(n_steps):
-        # a step down the gradient, back into the boxes
-        new = np.clip(ahead - _GRADIENT_STEP * (back @ (bend @ ahead)), raw - _HALF_VOXEL, raw + _HALF_VOXEL)
-        # and ahead by the momentum
-        t_new = (1 + np.sqrt(1 + 4 * t * t)) / 2
-        ahead = new + (t - 1) / t_new * (new - x)
-        x, t = new, t_new
-    return x
 
 
 def _umbrella(n_vertices: int, faces: NDArray[np.intp]) -> sparse.csr_array:
@@ -199,20 +319,3 @@ def _thin(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
     wide = np.pad(inside, 2)
     thin = wide & ~ndimage.binary_opening(wide, cube) | ~wide & ~ndimage.binary_opening(~wide, cube)
     return ndimage.binary_dilation(thin[2:-2, 2:-2, 2:-2], np.ones((3, 3, 3), bool), iterations=2)
-
-
-def _untangled(x: NDArray, start: NDArray, faces: NDArray[np.intp], thin: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Put vertices back to `start`, where nothing crosses, until no faces at thin places cross or collapse."""
-    x = x.copy()
-    watched = faces[thin[faces].any(axis=1)]
-    for _ in range(_UNTANGLE_STEPS):
-        # bad faces and all faces that share a vertex with them go back
-        part = Mesh(x, watched)
-        bad = np.union1d(crossings(part), np.flatnonzero(part.areas < _SLIVER))
-        if not len(bad):
-            return x
-        tangled = np.zeros(len(x), bool)
-        tangled[watched[bad]] = True
-        tangled[watched[tangled[watched].any(axis=1)]] = True  # and their neighbours
-        x[tangled] = start[tangled]
-    return start

@@ -30,7 +30,8 @@ SOURCE = "cranio-nb"
 import subprocess, sys
 
 if "google.colab" in sys.modules:
-    command = [sys.executable, "-m", "pip", "install", "-q", f"{SOURCE}[view]", "anywidget"]
+    wanted = f"cranio-nb[view] @ {SOURCE}" if "git+" in SOURCE else f"{SOURCE}[view]"
+    command = [sys.executable, "-m", "pip", "install", "-q", wanted, "anywidget"]
     subprocess.run(command, check=True)"""
 
 

@@ -151,12 +151,11 @@ def _student_tags(cell: NotebookNode) -> dict[str, Any]:
 
 
 def _expected(cell: NotebookNode) -> NotebookNode:
-    """The picture that a cell should draw, folded away."""
+    """The picture that a cell should draw, folded away; JupyterLab asks for an attachment before it knows of it."""
     shown = next(output for output in cell.outputs if "image/png" in output.get("data", {}))
     alt = shown.metadata["image/png"]["alt"]
-    folded = _folded("Expected picture", f"![{alt}](attachment:expected.png)")
-    folded.attachments = {"expected.png": {"image/png": shown.data["image/png"].replace("\n", "")}}
-    return folded
+    png = shown.data["image/png"].replace("\n", "")
+    return _folded("Expected picture", f"![{alt}](data:image/png;base64,{png})")
 
 
 def _folded(title: str, text: str) -> NotebookNode:

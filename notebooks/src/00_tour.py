@@ -63,7 +63,7 @@ viewer = widgets.ct_viewer(ct)
 viewer
 
 # %% [markdown]
-# *In a live notebook this picture has sliders. Where yours has none, move it from a new cell:*
+# *Move this picture with its sliders; where it has none, from a new cell of a notebook:*
 # `viewer.set(plane=30)`. *Its controls are* `plane`, `centre` *and* `width`; lesson 01 explains the last two.
 #
 # The bright ring is the skull. Move through the slices: somewhere the ring is open. The letters are the patient's
@@ -100,7 +100,7 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 # orange dashes are the curve that the balloon starts from. It is made from the ends and their tangents and is a good
 # guess already, so little is left to inflate. The broad pale line is the bone that is missing, known because this head
 # is synthetic. The two plots at the right (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04
-# explains them. You see the balloon at rest; in a live notebook press play to see it again from step 0.
+# explains them. You see the balloon at rest; where there is a button to play it, watch it again from step 0.
 
 # %% tags=["nbval-check-output"]
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10
@@ -167,8 +167,8 @@ if case.truth is not None:
 cn.show(bone, prosthesis)
 
 # %% [markdown]
-# *In a live notebook you can turn this head with the mouse.* Its top is flat because the slices are 2.5 mm apart
-# (section 1): the highest slice with bone is a disc, and there is nothing between it and the next.
+# *In a live notebook and on the site this head turns with the mouse.* Its top is flat because the slices are 2.5 mm
+# apart (section 1): the highest slice with bone is a disc, and there is nothing between it and the next.
 #
 # That is the whole way: a scan went in, a solid came out. The rest of the course asks at each step: *why does this
 # work, when does it fail, and how do we know?*

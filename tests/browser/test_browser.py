@@ -144,3 +144,19 @@ def test_a_lesson_runs_from_top_to_bottom(open_notebook, lab_server, lesson):
 
 def cells_of(folder, lesson):
     return json.loads((folder / f"{lesson}.ipynb").read_text())["cells"]
+
+
+def test_a_students_copy_shows_its_expected_picture_and_complains_of_nothing(chromium, lab_server):
+    address, folder = lab_server
+    name = "exercises/02_segmentation.ipynb"
+    if not (folder / name).is_file():
+        pytest.skip(f"{name} is not built")
+    page = chromium.new_page(viewport={"width": 1366, "height": 5000})
+    complaints = []
+    page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
+    page.goto(f"{address}/lab/workspaces/copy/tree/{name}?reset")
+    folded = page.locator("details", has_text="Expected picture")
+    folded.locator("summary").click(timeout=60_000)
+    assert folded.locator("img").evaluate("image => image.decode().then(() => image.naturalWidth)") > 100
+    page.close()
+    assert complaints == []

@@ -10,7 +10,7 @@ from html_page import Page
 from PIL import Image
 from small_site import NAME, few_views, write_project
 
-from cranio_nb.teaching.site import build, pages
+from cranio_nb.teaching.site import build, pages, slides
 
 pytestmark = pytest.mark.filterwarnings("default")  # Sphinx and its extensions have warnings of their own
 
@@ -60,6 +60,14 @@ def test_every_link_leads_to_a_file_of_the_site(site):
                 assert tag == "a", (path.name, link)  # nothing is loaded from there
             elif not link.startswith(("#", "data:", "javascript:")):
                 assert (path.parent / link.split("#")[0].split("?")[0]).exists(), (path.name, link)
+
+
+def test_each_page_has_one_title_and_parts_of_different_names(site):
+    for path in site.rglob("*.html"):
+        page = Page(path.read_text())
+        assert len(page.all("h1")) == 1, path.name
+        names = [tag.get("aria-label") for tag in page.all("aside")]
+        assert all(names) and len(set(names)) == len(names), path.name
 
 
 def test_no_style_and_no_script_fetches_from_elsewhere(site):
@@ -179,3 +187,25 @@ def test_without_scripts_the_picture_and_its_caption_are_there(chromium, address
     assert first.locator("figcaption").inner_text() == "grey 50, a narrow bar at the left of it <1>"
     assert first.locator("img").count() == 1
     context.close()
+
+
+def test_slides_turn_by_keys_and_their_panel_moves(chromium, tmp_path, monkeypatch):
+    if build.find_spec("sphinx_revealjs") is None:
+        pytest.skip('the extra "site" is not installed')
+    few_views(monkeypatch)
+    notebook = write_project(tmp_path) / "notebooks" / f"{NAME}.ipynb"
+    context = chromium.new_context(offline=True, viewport={"width": 1366, "height": 768})
+    talk = context.new_page()
+    said = []
+    talk.on("console", lambda message: said.append(message.text))
+    talk.on("pageerror", lambda error: said.append(str(error)))
+    talk.goto(slides.write_slides(notebook, tmp_path / "talk").as_uri())
+    slider = talk.get_by_role("slider", name="grey of it (levels)", exact=True)
+    talk.keyboard.press("ArrowRight")
+    talk.keyboard.press("ArrowDown")  # from a section's text to its panel
+    slider.focus()
+    talk.keyboard.press("End")  # moves the slider, and turns no slide
+    assert shown(panels(talk).first)[0] == "grey 100, a narrow bar at the left of it <1>"
+    assert slider.is_visible()
+    context.close()
+    assert said == []

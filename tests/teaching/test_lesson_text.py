@@ -1,8 +1,12 @@
 """Texts of lessons become notebooks: cells in order, tags kept, ids that follow from the text alone."""
 
+import subprocess
+import sys
+
 import nbformat
 import pytest
 from lesson_cells import code, tagged
+from packaging.requirements import Requirement
 
 from cranio_nb.errors import InputRefused
 from cranio_nb.teaching.lesson_text import read_lesson
@@ -42,6 +46,21 @@ def test_cells_keep_their_order_and_tags_below_the_one_for_colab(read):
     assert kinds == ["markdown", "code", "code", "code", "code"] and notebook.cells[0].source == "# A lesson"
     assert "google.colab" in notebook.cells[1].source and not any(cell.outputs for cell in code(notebook))
     assert [cell.source.split("(")[0] for cell in tagged(notebook, "solution")] == ["def half"]
+
+
+@pytest.mark.parametrize("source", ["cranio-nb", "./cranio_nb-0.1-py3-none-any.whl", "git+https://localhost/b/c"])
+def test_on_colab_pip_is_asked_for_what_it_understands(read, monkeypatch, source):
+    asked = []
+    monkeypatch.setitem(sys.modules, "google.colab", None)
+    monkeypatch.setattr(subprocess, "run", lambda command, check: asked.extend(command))
+    exec(read(TEXT).cells[1].source.replace('SOURCE = "cranio-nb"', f"SOURCE = {source!r}"), {})
+    wanted = asked[-2]
+    if source.endswith(".whl"):
+        assert wanted == f"{source}[view]"  # pip takes a path with extras, which is no requirement of the standard
+    else:
+        requirement = Requirement(wanted)
+        assert requirement.extras == {"view"} and requirement.name == "cranio-nb"
+        assert requirement.url == (source if "+" in source else None)
 
 
 def test_ids_are_unique_and_follow_from_the_text(read):

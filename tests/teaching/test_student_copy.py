@@ -37,10 +37,9 @@ def test_shipped_copies_name_the_exercise_in_each_stub(copy):
     assert [hit[1] for hit in numbers if hit] == checks
 
 
-def test_expected_pictures_are_attached_and_described(copy):
+def test_expected_pictures_lie_in_their_cells_and_are_described(copy):
     for cell in (c for c in copy.cells if "Expected picture" in c.source):
-        assert re.search(r"!\[\S.{40,}\]\(attachment:expected\.png\)", cell.source)
-        assert len(cell.attachments["expected.png"]["image/png"]) > 1000
+        assert re.search(r"!\[\S.{40,}\]\(data:image/png;base64,[\w+/=]{1000,}\)", cell.source)
 
 
 def test_a_solution_becomes_a_stub_and_is_folded_away_below_its_check():

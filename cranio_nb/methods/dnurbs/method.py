@@ -39,9 +39,11 @@ from ...volume import Volume
 from ..piece import Piece
 from . import sheet, sheet_motion
 from .sheet import Material, Sheet, Springs
-from .sheet_motion import Dynamics, Motion, Setting
+from .sheet_energy import Dynamics, Setting
+from .sheet_motion import Motion
 
-_ROUNDS = 5  # of weakening springs and settling again
+ROUNDS = 5
+"""Of weakening springs and settling again."""
 _SPHERE_ROUNDS = 8  # of fitting the sphere to what is not far off it
 _FIND_STEPS = 6  # of looking up where a ray meets the sheet
 
@@ -153,17 +155,12 @@ def fit(
     -------
     Sheets
     """
-    # uniform knots over the whole map, about span_mm apart
-    spans = (max(round((len(radius_map.outer) - 1) * radius_map.step_mm / span_mm), 4),) * 2
-    size = (len(radius_map.outer) - 1) * radius_map.step_mm / spans[0]
-    # rigidity k (l / 2 pi)^4 with unit strength k: bone ripples of the wavelength l are halved
-    material = Material.plate(tension_mm2, (wavelength_mm / (2 * np.pi)) ** 4, (size, size))
     rests, settings = [], []
     for radius in (radius_map.outer, radius_map.inner):
         # each surface by itself, bent as little as can be from the sphere that fits it
-        springs = springs_to(radius_map, radius, spans)
-        natural = _sphere(springs.points, radius_map, spans)
-        rest, springs = sheet.settle(springs, natural, material, rounds=_ROUNDS)
+        springs, natural = hold(radius_map, radius, span_mm)
+        material = plate_over(radius_map, natural.spans, wavelength_mm=wavelength_mm, tension_mm2=tension_mm2)
+        rest, springs = sheet.settle(springs, natural, material, rounds=ROUNDS)
         settings.append(Setting(springs, natural, material))
         rests.append(Motion(rest, np.zeros(0), 0.0, converged=True))
     # with free weights the equations of motion go on from there
@@ -175,6 +172,51 @@ def fit(
     outer, inner = rests
     counts, ends = (outer.n_iter, inner.n_iter), (outer.converged, inner.converged)
     return Sheets(radius_map, outer.sheet, inner.sheet, (settings[0], settings[1]), counts, ends)
+
+
+def hold(radius_map: RadiusMap, radius: NDArray[np.float64], span_mm: float) -> tuple[Springs, Sheet]:
+    """What holds the sheet of one surface, whatever it is made of.
+
+    Parameters
+    ----------
+    radius_map : RadiusMap
+    radius : ndarray, shape (M, M)
+        The vault's outer or inner radii.
+    span_mm : float
+        mm between the knots, about: they are uniform over the whole map.
+
+    Returns
+    -------
+    springs : Springs
+        To the bone beside the hole.
+    natural : Sheet
+        Its shape without stress: on the sphere that fits these points best.
+    """
+    spans = (max(round((len(radius_map.outer) - 1) * radius_map.step_mm / span_mm), 4),) * 2
+    springs = springs_to(radius_map, radius, spans)
+    return springs, _sphere(springs.points, radius_map, spans)
+
+
+def plate_over(
+    radius_map: RadiusMap, spans: tuple[int, int], *, wavelength_mm: float, tension_mm2: float = 0.0
+) -> Material:
+    """The material of a sheet over a map.
+
+    Parameters
+    ----------
+    radius_map : RadiusMap
+    spans : tuple of int
+        Of the sheet.
+    wavelength_mm, tension_mm2
+        As for `pieces`.
+
+    Returns
+    -------
+    Material
+    """
+    # rigidity k (l / 2 pi)^4 with unit strength k: bone ripples of the wavelength l are halved
+    size = (len(radius_map.outer) - 1) * radius_map.step_mm / spans[0]
+    return Material.plate(tension_mm2, (wavelength_mm / (2 * np.pi)) ** 4, (size, size))
 
 
 def springs_to(radius_map: RadiusMap, radius: NDArray[np.float64], spans: tuple[int, int]) -> Springs:

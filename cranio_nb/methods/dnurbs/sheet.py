@@ -18,6 +18,7 @@ sparse solve.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -192,6 +193,27 @@ def tensor(
     return sparse.csr_array((values, (at, columns)), shape=(len(v), along_v.shape[1] * along_u.shape[1]))
 
 
+def scale_rows(matrix: sparse.csr_array, by: NDArray) -> sparse.csr_array:
+    """A diagonal matrix times another.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (n, m)
+    by : ndarray, shape (n,)
+
+    Returns
+    -------
+    sparse array, shape (n, m)
+
+    Examples
+    --------
+    >>> scale_rows(sparse.csr_array([[1.0, 2.0], [0.0, 3.0]]), np.array([10.0, 100.0])).toarray().tolist()
+    [[10.0, 20.0], [0.0, 300.0]]
+    """
+    each = np.repeat(by, np.diff(matrix.indptr))
+    return sparse.csr_array((matrix.data * each, matrix.indices, matrix.indptr), matrix.shape)
+
+
 def gauss(spans: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Gauss points of all spans and their weights.
 
@@ -231,6 +253,7 @@ def stiffness(spans: tuple[int, int], material: Material) -> sparse.csr_array:
     return sparse.csr_array(total)
 
 
+@lru_cache(maxsize=8)
 def _grams(spans: int) -> list[sparse.csr_array]:
     """Integrals of the products of B-splines, of their first and of their second derivatives."""
     # Gauss quadrature, exact for these polynomials
@@ -297,5 +320,5 @@ def _solved(
 ) -> NDArray[np.float64]:
     """Control points, shape (n m, 3), that balance springs and bending."""
     # (K + P^T k P) t = P^T k d: the energy's slope is zero
-    pull = places.T @ sparse.diags_array(strength)
+    pull = scale_rows(places, strength).T
     return np.asarray(spsolve(sparse.csc_array(bent + pull @ places), pull @ pulled, permc_spec="MMD_AT_PLUS_A"))

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from .sheet import BY_U, BY_UU, BY_V, BY_VU, BY_VV, VALUE, Sheet, tensor
+from .sheet import BY_U, BY_UU, BY_V, BY_VU, BY_VV, VALUE, Sheet, scale_rows, tensor
 
 Pair = tuple[int, int]
 
@@ -173,24 +173,3 @@ def scale_columns(matrix: sparse.csr_array, by: NDArray) -> sparse.csr_array:
     [[10.0, 200.0], [0.0, 300.0]]
     """
     return sparse.csr_array((matrix.data * by[matrix.indices], matrix.indices, matrix.indptr), matrix.shape)
-
-
-def scale_rows(matrix: sparse.csr_array, by: NDArray) -> sparse.csr_array:
-    """A diagonal matrix times another.
-
-    Parameters
-    ----------
-    matrix : sparse array, shape (n, m)
-    by : ndarray, shape (n,)
-
-    Returns
-    -------
-    sparse array, shape (n, m)
-
-    Examples
-    --------
-    >>> scale_rows(sparse.csr_array([[1.0, 2.0], [0.0, 3.0]]), np.array([10.0, 100.0])).toarray().tolist()
-    [[10.0, 20.0], [0.0, 300.0]]
-    """
-    each = np.repeat(by, np.diff(matrix.indptr))
-    return sparse.csr_array((matrix.data * each, matrix.indices, matrix.indptr), matrix.shape)

@@ -13,85 +13,32 @@ elastic forces and the springs. Ours: a natural shape, whose derivatives are tak
 that comes from the change of J in time, is left out (it vanishes with frozen weights, and at rest); weak springs hold
 free weights at 1, because a common factor of all weights changes nothing; and a step that would raise the energy or
 make a weight negative starts anew at rest with half the time.
+
+With frozen weights J is constant, so the place of rest q* is known at once, and with it all that follows:
+
+    f(q) = K (q* - q),    E(q) = E(q*) + 1/2 (q - q*) K (q - q*).
+
+Then the matrix of a step is factorised once, and no step raises the energy: implicit steps never do where it is
+quadratic.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from itertools import count, islice
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu, spsolve
 
-from .sheet import STRAINS, VALUE, Material, Sheet, Springs, gauss
-from .sheet_derivatives import Pair, derivatives, jacobians, rational_basis, scale_rows, spline_products
+from .sheet import STRAINS, VALUE, Sheet, scale_rows
+from .sheet_derivatives import derivatives, jacobians, rational_basis, scale_columns
+from .sheet_energy import Dynamics, Quadrature, Setting, potential, quadrature, stretched
 
 _LIGHTEST = 0.05  # a weight may not fall below
 _SHORTEST = 1e-6  # part of its time to which a step is shortened before the sheet counts as being at rest
-
-
-@dataclass(frozen=True)
-class Dynamics:
-    """How a sheet moves.
-
-    Parameters
-    ----------
-    dt : float
-        Time of a step.
-    mass, damping : float
-        mu and gamma, per unit of parameter area.
-    free_weights : bool
-        Whether weights move too.
-    hold : float
-        Constant of the springs that hold each free weight at 1.
-    """
-
-    dt: float = 1.0
-    mass: float = 1.0
-    damping: float = 1.0
-    free_weights: bool = False
-    hold: float = 1.0
-
-
-@dataclass(frozen=True, eq=False)
-class Setting:
-    """What acts on a sheet.
-
-    Parameters
-    ----------
-    springs : Springs
-    natural : Sheet
-        The shape without stress, of as many spans.
-    material : Material
-    """
-
-    springs: Springs
-    natural: Sheet
-    material: Material
-
-
-@dataclass(frozen=True, eq=False)
-class Quadrature:
-    """What the sums of the energy need of a setting, whatever the sheet's place.
-
-    Parameters
-    ----------
-    weight : ndarray, shape (k,)
-        Of the Gauss points.
-    splines : dict
-        (times by v, times by u) -> products of the B-splines at the Gauss points, sparse, shape (k, n m).
-    natural : dict
-        (times by v, times by u) -> the natural shape at the Gauss points, shape (k, 3), mm.
-    at_springs : dict
-        (0, 0) -> products of the B-splines at the springs.
-    """
-
-    weight: NDArray[np.float64]
-    splines: dict[Pair, sparse.csr_array]
-    natural: dict[Pair, NDArray[np.float64]]
-    at_springs: dict[Pair, sparse.csr_array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,25 +76,6 @@ class _Forces:
     matter: sparse.csr_array
     elastic: sparse.csr_array
     force: NDArray[np.float64]
-
-
-def quadrature(setting: Setting) -> Quadrature:
-    """Prepare the sums of the energy over the Gauss points of all spans and over the springs.
-
-    Parameters
-    ----------
-    setting : Setting
-
-    Returns
-    -------
-    Quadrature
-    """
-    natural, springs = setting.natural, setting.springs
-    (v, by_v), (u, by_u) = (gauss(n) for n in natural.spans)
-    splines = spline_products(np.repeat(v, len(u)), np.tile(u, len(v)), natural.spans)
-    shape = derivatives(natural, rational_basis(natural.weights, splines))
-    at_springs = spline_products(springs.v, springs.u, natural.spans, (VALUE,))
-    return Quadrature(np.outer(by_v, by_u).ravel(), splines, shape, at_springs)
 
 
 def start(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> Motion:
@@ -198,43 +126,65 @@ def relax(
     Motion
         `converged` says whether it came to rest.
     """
+    moving = _moving if dynamics.free_weights else _moving_frozen
+    now = motion
+    for now in islice(moving(motion, setting, dynamics, tol), max_iter):
+        if iter_callback is not None:
+            iter_callback(now)
+        if now.converged:
+            break
+    return now
+
+
+def _moving(motion: Motion, setting: Setting, dynamics: Dynamics, tol: float) -> Iterator[Motion]:
+    """The motion after each step."""
     sums = quadrature(setting)
     forces = _forces(motion.sheet, setting, dynamics, sums)
-    for _ in range(max_iter):
+    while True:
         motion = _step(motion, forces, setting, dynamics, sums)
         forces = _forces(motion.sheet, setting, dynamics, sums)
         rests = motion.moved <= tol and (motion.moved == 0 or _left(motion.sheet, forces, dynamics) <= tol)
         motion = replace(motion, converged=rests)
-        if iter_callback is not None:
-            iter_callback(motion)
-        if motion.converged:
-            break
-    return motion
+        yield motion
 
 
-def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> float:
-    """Elastic energy of a sheet and of the springs.
+def _moving_frozen(motion: Motion, setting: Setting, dynamics: Dynamics, tol: float) -> Iterator[Motion]:
+    """The motion after each step, weights frozen: a swing about the place of rest, which is known."""
+    sums, dt, sheet = quadrature(setting), dynamics.dt, motion.sheet
+    matter, elastic, pulled = _frozen(sheet.weights, setting, sums)
+    q, velocity = sheet.control.reshape(-1, 3), motion.velocity.reshape(3, -1).T
+    # the place of rest and its energy
+    rest = spsolve(elastic, pulled, permc_spec="MMD_AT_PLUS_A")
+    least = potential(Sheet(rest.reshape(sheet.control.shape), sheet.weights), setting, dynamics, sums)
+    # (M / dt^2 + D / dt + K) dq = K (q* - q) + M q' / dt, one matrix for all steps
+    inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * matter
+    factors = splu(sparse.csc_array(inertia + elastic), permc_spec="MMD_AT_PLUS_A")
+    for n_iter in count(motion.n_iter + 1):
+        change = factors.solve(elastic @ (rest - q) + dynamics.mass / dt * (matter @ velocity))
+        q, velocity, away = q + change, change / dt, rest - q - change
+        energy = (
+            least + float(np.sum(away * (elastic @ away)) + dynamics.mass * np.sum(velocity * (matter @ velocity))) / 2
+        )
+        moved, left = (float(np.linalg.norm(way, axis=1).max()) for way in (change, away))
+        now = Sheet(q.reshape(sheet.control.shape), sheet.weights)
+        yield Motion(now, velocity.T.ravel(), energy, moved, n_iter, converged=max(moved, left) <= tol)
 
-    Parameters
-    ----------
-    sheet : Sheet
-    setting : Setting
-    dynamics : Dynamics
-    sums : Quadrature
-        Of the setting.
 
-    Returns
-    -------
-    float
-    """
-    shape, springs = derivatives(sheet, rational_basis(sheet.weights, sums.splines)), setting.springs
-    elastic = sum(
-        factor * float(sums.weight @ ((shape[d] - sums.natural[d]) ** 2).sum(axis=1))
-        for factor, d in zip(setting.material.stiffness, STRAINS, strict=True)
-    )
-    pulled = float(springs.strength @ ((springs.points - sheet.at(springs.v, springs.u)) ** 2).sum(axis=1))
-    held = dynamics.hold * float(((sheet.weights - 1) ** 2).sum()) if dynamics.free_weights else 0.0
-    return (elastic + pulled + held) / 2
+def _frozen(
+    weights: NDArray[np.float64], setting: Setting, sums: Quadrature
+) -> tuple[sparse.csc_array, sparse.csc_array, NDArray[np.float64]]:
+    """Of one coordinate, the same for x, y and z: the integral of J^T J, and K; and K q*, shape (n m, 3)."""
+    parts, at_springs = (rational_basis(weights, products) for products in (sums.splines, sums.at_springs))
+    by_point = {d: scale_columns(part, weights.ravel()) for d, part in parts.items()}
+    # the springs, then the sheet itself against its natural shape
+    pull = scale_columns(at_springs[VALUE], weights.ravel())
+    held = scale_rows(pull, setting.springs.strength).T
+    elastic, pulled = held @ pull, held @ setting.springs.points
+    for factor, d in zip(setting.material.stiffness, STRAINS, strict=True):
+        bent = scale_rows(by_point[d], factor * sums.weight).T
+        elastic, pulled = elastic + bent @ by_point[d], pulled + bent @ sums.natural[d]
+    matter = scale_rows(by_point[VALUE], sums.weight).T @ by_point[VALUE]
+    return sparse.csc_array(matter), sparse.csc_array(elastic), pulled
 
 
 def _step(motion: Motion, forces: _Forces, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> Motion:
@@ -274,7 +224,7 @@ def _forces(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature
     pull = jacobians(sheet, at_springs, free_weights=free)[VALUE]
     strength = np.tile(springs.strength, 3)
     elastic = pull.T @ scale_rows(pull, strength)
-    force = pull.T @ (strength * (springs.points - sheet.at(springs.v, springs.u)).T.ravel())
+    force = pull.T @ (strength * stretched(sheet, springs, sums).T.ravel())
     # the sheet itself, against its natural shape
     basis = rational_basis(sheet.weights, sums.splines)
     parts, shape = jacobians(sheet, basis, free_weights=free), derivatives(sheet, basis)

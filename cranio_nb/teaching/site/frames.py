@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
+from bisect import bisect_left
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -38,6 +39,8 @@ class Frames:
         The caption of each setting.
     off : tuple of tuple of str
         Controls without effect at each setting.
+    tops : tuple of dict of str to int
+        By name of the axis, the last place worth going to at each setting, where a picture moves the end of a slider.
     files : dict of str to bytes
         WebP by name, in the order of their first use.
     """
@@ -46,6 +49,7 @@ class Frames:
     names: tuple[str, ...]
     lines: tuple[str, ...]
     off: tuple[tuple[str, ...], ...]
+    tops: tuple[dict[str, int], ...]
     files: dict[str, bytes]
 
     @property
@@ -74,7 +78,7 @@ def draw_frames(panel: Panel, axes: Sequence[Axis]) -> Frames:
     Frames
     """
     encode = encoding(panel)
-    names, lines, off, files = [], [], [], {}
+    names, lines, off, tops, files = [], [], [], [], {}
     for view in _views(panel, axes):
         data = encode(view.rgb)
         name = f"{hashlib.sha256(data).hexdigest()[:12]}.webp"
@@ -82,7 +86,17 @@ def draw_frames(panel: Panel, axes: Sequence[Axis]) -> Frames:
         names.append(name)
         lines.append(view.line)
         off.append(tuple(view.off))
-    return Frames(tuple(axes), tuple(names), tuple(lines), tuple(off), files)
+        tops.append(_tops(view, axes))
+    return Frames(tuple(axes), tuple(names), tuple(lines), tuple(off), tuple(tops), files)
+
+
+def _tops(view: View, axes: Sequence[Axis]) -> dict[str, int]:
+    """The first place at or beyond each end that a view sets: what lies beyond an end is drawn as that end."""
+    ends = view.limits or {}
+    moved = (axis for axis in axes if axis.control.name in ends)
+    return {
+        axis.control.name: min(bisect_left(axis.stops, ends[axis.control.name]), len(axis.stops) - 1) for axis in moved
+    }
 
 
 def _views(panel: Panel, axes: Sequence[Axis]) -> Iterator[View]:

@@ -89,6 +89,7 @@ def _data(panel: Panel, frames: Frames, folder: str) -> str:
         "pictures": [place[name] for name in frames.names],
         "lines": frames.lines,
         "off": [[number[name] for name in off if name in number] for off in frames.off],
+        "tops": [[[number[name], place] for name, place in tops.items()] for tops in frames.tops],
     }
     return json.dumps(found, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 

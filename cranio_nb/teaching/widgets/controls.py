@@ -209,7 +209,7 @@ class View:
     line : str
         One line in words and numbers, the same on every run: the picture's caption.
     limits : dict of str to float
-        New upper ends of sliders, by name.
+        New upper ends of sliders, by name; what is asked for beyond one is drawn as that end.
     off : tuple of str
         Controls without effect at this setting.
     """

@@ -1,11 +1,15 @@
 """A panel's controls -> a widget that moves its picture. The only importer of anywidget.
 
 ``front/panel.js`` draws it in the browser, with native elements: each control has a name and obeys the keyboard.
-Values go to and fro as `Control.stops`; while a picture is made, newer values only replace those that wait.
+Values go to and fro as `Control.stops`; while a picture is made, newer values only replace those that wait. Pictures
+that take long are drawn ahead while the kernel rests, so that they are there when a hand asks for them.
 """
 
 from __future__ import annotations
 
+import asyncio
+from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +20,10 @@ from ...drawing.described import encoded_jpeg
 from ...errors import CranioError
 from .controls import START, Choice, Control, Slider
 
+REST_S = 0.2
+"""How long the kernel rests before a picture is drawn ahead."""
+LATE_S = 0.05
+"""Called so much later than asked for, it did not rest."""
 _FRONT = Path(__file__).parent / "front"
 
 
@@ -69,6 +77,8 @@ class Front:
         self.show()
         self.widget.observe(self._moved, "values")
         self.widget.on_msg(self._pressed)
+        if panel.ahead:
+            self._rest(iter(stops_ahead(panel)))
 
     def show(self) -> None:
         """Show what the panel shows."""
@@ -93,6 +103,37 @@ class Front:
             self.widget.caption = act(self.panel)
         except CranioError as problem:
             self.widget.caption = str(problem)
+
+    def _rest(self, stops: Iterator[Any]) -> None:
+        """Draw the next stop after a rest of the kernel; outside of one there is none to wait for."""
+        with suppress(RuntimeError):
+            loop = asyncio.get_running_loop()
+            loop.call_later(REST_S, self._draw_ahead, stops, loop.time() + REST_S)
+
+    def _draw_ahead(self, stops: Iterator[Any], due: float) -> None:
+        # called late, the kernel was busy: run-all is not held up
+        if asyncio.get_running_loop().time() - due < LATE_S:
+            stop = next(stops, None)
+            if stop is None:
+                return
+            self.panel.picture(**self.panel.values | {self.panel.ahead: stop})
+        self._rest(stops)
+
+
+def stops_ahead(panel: Any) -> list[float]:
+    """The stops to draw ahead, those next to where the slider stands first.
+
+    Parameters
+    ----------
+    panel : Panel
+        With a slider `ahead`.
+
+    Returns
+    -------
+    list of float
+    """
+    now = panel.values[panel.ahead]
+    return sorted(panel.controls[panel.ahead].stops, key=lambda stop: abs(stop - now))[1:]
 
 
 def declared(control: Control, *, slow: bool) -> dict[str, Any]:

@@ -31,6 +31,9 @@ class Panel:
         Buttons: label -> what to do with the panel, returning a line to show.
     slow : bool
         Whether a picture takes long: controls then speak when they are let go.
+    ahead : str
+        Name of a slider whose stops are worth drawing while the kernel has nothing else to do, because `draw` keeps
+        what takes long of each.
     """
 
     def __init__(
@@ -42,6 +45,7 @@ class Panel:
         presets: dict[str, dict[str, Any]] | None = None,
         actions: dict[str, Callable[[Any], str]] | None = None,
         slow: bool = False,
+        ahead: str = "",
     ) -> None:
         self.controls = {control.name: control for control in controls}
         self.values: dict[str, Any] = {control.name: control.value for control in controls}
@@ -49,6 +53,7 @@ class Panel:
         self.presets = dict(presets or {})
         self.actions = dict(actions or {})
         self.slow = slow
+        self.ahead = ahead
         self._draw = draw
         self.view = self.first = draw(**self.values)
         self.values |= {name: min(self.values[name], top) for name, top in self._tops.items()}
@@ -113,12 +118,10 @@ class Panel:
         View
         """
         asked = self.values | {name: self.controls[name].taken(value) for name, value in values.items()}
-        at_end = {name for name, top in self._tops.items() if asked[name] == top}
-        self.values, self.view = asked, self.picture(**asked)
         # a slider at its end stays at its end where the picture moves that end, and none stands beyond it
-        ends = {name: top if name in at_end else min(asked[name], top) for name, top in self._tops.items()}
-        if asked | ends != asked:
-            self.values, self.view = asked | ends, self.picture(**asked | ends)
+        asked |= {name: self.controls[name].stops[-1] for name, top in self._tops.items() if asked[name] == top}
+        self.view = self.picture(**asked)
+        self.values = asked | {name: min(asked[name], top) for name, top in self._tops.items()}
         return self.view
 
     @property

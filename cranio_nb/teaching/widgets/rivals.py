@@ -89,7 +89,9 @@ def guiding_points(bone: Volume, opening: Opening, truth: Prosthesis | None = No
     alt = "The hole from outside with guiding points, rim and fill; beside it a slice with the fill and what it misses."
     controls = (Slider("n", "guiding points", 3, 24, 12),)
     presets = {f"{n} points": {"n": n} for n in (3, 4, 24)}
-    return Panel(controls, lambda n: _guides_view(bone, plane, made(n), lost), alt=alt, presets=presets, slow=True)
+    return Panel(
+        controls, lambda n: _guides_view(bone, plane, made(n), lost), alt=alt, presets=presets, slow=True, ahead="n"
+    )
 
 
 def _flat_fill(

@@ -6,6 +6,7 @@ Frame: world mm (LPS).
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import islice
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +22,8 @@ from ...volume import Volume
 from .controls import Slider, View
 from .panel import Panel
 from .parts import HEIGHT, LEFT, RIGHT, WIDTH, pixel_to_fit, put_view
+
+MOST_STEPS = 48
 
 
 def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
@@ -38,15 +41,18 @@ def surface(patch: Volume, *, towards: ArrayLike = (1.0, -0.4, 0.3)) -> Panel:
     Panel
         Control ``steps``.
     """
-    # each number of steps is smoothed and drawn once
-    raw = stage.extract_surface(patch, smooth=False)
-    smoothed = lru_cache(maxsize=None)(lambda n: raw if n == 0 else stage.extract_surface(patch, n_steps=n))
+    # the relaxation is run once; each number of steps is made a solid and drawn once
+    stairs = stage.find_stairs(patch)
+    raw, relaxed = stairs.mesh, list(islice(stage.relaxations(stairs), MOST_STEPS + 1))
+    smoothed = lru_cache(maxsize=None)(lambda n: stage.smoothed(stairs, relaxed[n]) if n else raw)
     shaded = lru_cache(maxsize=None)(lambda n: _shaded(smoothed(n), towards))
     moved = lru_cache(maxsize=None)(lambda n: np.linalg.norm(smoothed(n).vertices - raw.vertices, axis=1))
-    controls = (Slider("steps", "smoothing steps", 0, 48, 24),)
+    controls = (Slider("steps", "smoothing steps", 0, MOST_STEPS, 24),)
     alt = "The shaded surface of the patch after smoothing, and a histogram of how far its vertices moved."
     bounds = float(patch.spacing.max() / 2), float(np.linalg.norm(patch.spacing) / 2)
-    return Panel(controls, lambda steps: _view(*shaded(steps), towards, moved(steps), bounds, steps), alt=alt)
+    return Panel(
+        controls, lambda steps: _view(*shaded(steps), towards, moved(steps), bounds, steps), alt=alt, ahead="steps"
+    )
 
 
 def _view(

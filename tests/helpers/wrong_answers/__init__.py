@@ -1,33 +1,12 @@
 """Wrong answers that students give, by exercise: the body of the function, and words of the sentence on its cause.
 
-None in place of the words: the cause has no sentence, and the answer is shown beside the right one.
+None in place of the words: the cause has no sentence, and the answer is shown beside the right one. Each lesson's are
+in the module that is named as its exercises are.
 """
 
-from . import (
-    ct,
-    deformable_model,
-    evaluation,
-    feature_extraction,
-    paper_tables,
-    prosthesis_volume,
-    rivals,
-    segmentation,
-    surface_reconstruction,
-    three_d,
-    tour,
-)
+from importlib import import_module
 
-_LESSONS = (
-    tour,
-    ct,
-    segmentation,
-    feature_extraction,
-    deformable_model,
-    prosthesis_volume,
-    surface_reconstruction,
-    evaluation,
-    rivals,
-    three_d,
-    paper_tables,
-)
-CATALOGUE = {number: answers for lesson in _LESSONS for number, answers in lesson.WRONG.items()}
+from cranio_nb.teaching.exercises import LESSONS
+
+_MODULES = [import_module(f"{__name__}.{name.partition('_')[2]}") for name in LESSONS]
+CATALOGUE = {number: answers for module in _MODULES for number, answers in module.WRONG.items()}

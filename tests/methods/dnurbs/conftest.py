@@ -5,7 +5,7 @@ import pytest
 from sheets import MATERIAL, SHAPE, SPANS
 
 from cranio_nb.methods.dnurbs.sheet import Sheet, Springs
-from cranio_nb.methods.dnurbs.sheet_motion import Setting
+from cranio_nb.methods.dnurbs.sheet_energy import Setting
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 """A sheet in motion: its energy falls, it comes to rest, and rest is where the energy is least."""
 
+from itertools import islice
+
 import numpy as np
 import pytest
 from scipy import sparse
@@ -7,28 +9,15 @@ from sheets import MATERIAL, SHAPE, SPANS
 
 from cranio_nb.methods.dnurbs import sheet, sheet_motion
 from cranio_nb.methods.dnurbs.sheet import Sheet, Springs
-from cranio_nb.methods.dnurbs.sheet_motion import Dynamics, Setting
-
-
-def test_the_gauss_points_weigh_as_much_as_the_sheet_is_wide(setting):
-    assert sheet_motion.quadrature(setting).weight.sum() == pytest.approx(SPANS[0] * SPANS[1])
-
-
-def test_the_energy_is_that_of_the_stiffness_and_the_springs(wild, setting):
-    one = Sheet(wild.control, np.ones(SHAPE))
-    off = one.control.reshape(-1, 3) - setting.natural.control.reshape(-1, 3)
-    springs = setting.springs
-    pulled = springs.strength @ ((springs.points - one.at(springs.v, springs.u)) ** 2).sum(axis=1)
-    wanted = (np.sum(off * (sheet.stiffness(SPANS, MATERIAL) @ off)) + pulled) / 2
-    found = sheet_motion.potential(one, setting, Dynamics(), sheet_motion.quadrature(setting))
-    assert found == pytest.approx(wanted, rel=1e-12)
+from cranio_nb.methods.dnurbs.sheet_energy import Dynamics, Setting, potential, quadrature
+from cranio_nb.methods.dnurbs.sheet_motion import _moving, _moving_frozen
 
 
 def test_the_kronecker_stiffness_is_the_one_of_gauss_points(setting):
     """The fast path and the general one agree on K where weights are 1."""
     loose = Springs(np.zeros((1, 3)), np.ones(1), np.ones(1), np.zeros(1))
     soft = Setting(loose, setting.natural, MATERIAL)
-    elastic = sheet_motion._forces(setting.natural, soft, Dynamics(), sheet_motion.quadrature(soft)).elastic
+    elastic = sheet_motion._forces(setting.natural, soft, Dynamics(), quadrature(soft)).elastic
     wanted = sparse.block_diag([sheet.stiffness(SPANS, MATERIAL)] * 3)
     assert abs(elastic - wanted).max() < 1e-11
 
@@ -47,6 +36,19 @@ def test_a_frozen_sheet_comes_to_rest_where_one_solve_puts_it(wild, setting, mas
     assert (np.diff([still.energy, *energies]) <= 1e-12 * still.energy).all()
     again = sheet_motion.relax(sheet_motion.start(rest, setting, dynamics), setting, dynamics, tol=1e-9)
     assert again.n_iter == 1 and again.moved < 1e-9  # rest is a fixed point
+
+
+@pytest.mark.parametrize("weight", [1.0, 2.5])
+def test_a_frozen_sheet_moves_as_the_equations_of_motion_say_step_by_step(wild, setting, weight):
+    """The swing about the known place of rest, and the steps that ask for the forces at each place."""
+    dynamics = Dynamics(mass=3.0, damping=0.5)
+    weights = np.linspace(1.0, weight, wild.weights.size).reshape(SHAPE)
+    still = sheet_motion.start(Sheet(wild.control, weights), setting, dynamics)
+    known, stepped = (motions(still, setting, dynamics, 0.0) for motions in (_moving_frozen, _moving))
+    for found, wanted in islice(zip(known, stepped, strict=False), 6):
+        np.testing.assert_allclose(found.sheet.control, wanted.sheet.control, atol=1e-8)
+        assert (found.energy, found.moved) == pytest.approx((wanted.energy, wanted.moved), rel=1e-9)
+        assert found.n_iter == wanted.n_iter
 
 
 @pytest.mark.parametrize(("mass", "damping"), [(1e6, 1.0), (0.0, 1e6)])
@@ -70,9 +72,9 @@ def test_free_weights_find_a_place_of_less_energy_that_is_a_least_one(setting):
         iter_callback=lambda m: energies.append(m.energy),
     )
     assert end.converged and (np.diff(energies) <= 1e-12 * energies[0]).all()
-    sums = sheet_motion.quadrature(setting)
-    least = sheet_motion.potential(end.sheet, setting, dynamics, sums)
-    assert least < sheet_motion.potential(rest, setting, dynamics, sums) - 1e-3
+    sums = quadrature(setting)
+    least = potential(end.sheet, setting, dynamics, sums)
+    assert least < potential(rest, setting, dynamics, sums) - 1e-3
     assert end.sheet.weights.min() > 0 and np.ptp(end.sheet.weights) > 0.1
     q = sheet_motion._coordinates(end.sheet, True)
     for i in (3, 90, 165, 180, 210):
@@ -80,4 +82,4 @@ def test_free_weights_find_a_place_of_less_energy_that_is_a_least_one(setting):
             sheet_motion._with_coordinates(q=q + s * np.eye(len(q))[i], sheet=end.sheet, free_weights=True)
             for s in (0.01, -0.01)
         ]
-        assert all(sheet_motion.potential(other, setting, dynamics, sums) > least for other in beside)
+        assert all(potential(other, setting, dynamics, sums) > least for other in beside)

@@ -70,3 +70,19 @@ def test_a_control_without_effect_is_not_drawn_again():
     frames = draw_frames(panel, axes_of(panel, "", 100))
     assert len(drawn) == 6 + 1 and len(frames.files) == 6 + 1
     assert frames.off[0] == ("k",) and frames.off[-1] == ()
+
+
+def test_a_slider_ends_at_the_first_stop_that_shows_its_end():
+    """Of stops 0, 2, 4, 6 an end of 3 is seen at 4: what is asked for beyond an end is drawn as that end."""
+
+    def draw(last, step):
+        shown = min(step, last)
+        return View(np.full((4, 4, 3), 10 * shown, np.uint8), f"step {shown} of {last}", limits={"step": last})
+
+    panel = widgets.Panel((Slider("last", "last", 2, 6, 6), Slider("step", "step", 0, 6, 0)), draw, alt="Grey.")
+    last, step = panel.controls.values()
+    frames = draw_frames(panel, (Axis(last, (2, 3, 6), 2), Axis(step, (0, 2, 4, 6), 0)))
+    assert [frames.tops[4 * i]["step"] for i in range(3)] == [1, 2, 3]
+    for i, end in enumerate((2, 3, 6)):
+        at = frames.tops[4 * i]["step"]
+        assert frames.lines[4 * i + at] == f"step {end} of {end}"

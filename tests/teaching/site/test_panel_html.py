@@ -35,7 +35,7 @@ def test_the_picture_its_caption_and_its_description_are_there_without_a_script(
 def test_each_setting_has_its_picture_and_its_caption(made, told):
     _, frames, _ = made
     n = len(told["panel"]["controls"][0]["stops"]) * 2 * 2
-    assert len(told["pictures"]) == len(told["lines"]) == len(told["off"]) == n
+    assert len(told["pictures"]) == len(told["lines"]) == len(told["off"]) == len(told["tops"]) == n
     assert tuple(told["files"][i] for i in told["pictures"]) == frames.names
 
 

@@ -1,5 +1,7 @@
 """A panel in the browser: what it is told, and what it does with what comes back."""
 
+import asyncio
+
 import numpy as np
 from panels import INSIDE, move
 
@@ -56,3 +58,45 @@ def test_a_button_says_what_came_of_it(live):
     panel = widgets.Panel((), lambda: VIEW, alt="A dot.", actions={"wave": lambda panel: "Waved."})
     panel.front.widget._handle_custom_msg({"action": "wave"}, [])
     assert panel.front.widget.caption == "Waved."
+
+
+def test_while_the_kernel_rests_each_stop_is_drawn_once_the_near_ones_first(live, monkeypatch):
+    from cranio_nb.teaching.widgets import live as front
+
+    monkeypatch.setattr(front, "REST_S", 0.0)
+    monkeypatch.setattr(front, "LATE_S", np.inf)
+    drawn = []
+
+    def draw(n):
+        drawn.append(n)
+        if len(drawn) == 5:
+            done.set()
+        return VIEW
+
+    async def kernel():
+        shown = panel.front.widget.drawn
+        await asyncio.wait_for(done.wait(), timeout=60)
+        return panel.front.widget.drawn - shown
+
+    done = asyncio.Event()
+    panel = widgets.Panel((Slider("n", "number", 0, 4, 3),), draw, alt="A dot.", ahead="n")
+    assert asyncio.run(kernel()) == 0  # nothing moves
+    assert drawn[:4] == [3, 2, 4, 1] and sorted(drawn) == [0, 1, 2, 3, 4]
+    assert panel.values == {"n": 3} and panel.view is panel.first
+
+
+def test_a_busy_kernel_draws_nothing_ahead(live, monkeypatch):
+    from cranio_nb.teaching.widgets import live as front
+
+    monkeypatch.setattr(front, "REST_S", 0.0)
+    monkeypatch.setattr(front, "LATE_S", 0.0)  # every call comes late
+    drawn = []
+    panel = widgets.Panel((Slider("n", "number", 0, 4, 3),), lambda n: drawn.append(n) or VIEW, alt="", ahead="n")
+
+    async def kernel():
+        assert panel.front.widget.drawn
+        for _ in range(20):
+            await asyncio.sleep(0)
+
+    asyncio.run(kernel())
+    assert drawn == [3]

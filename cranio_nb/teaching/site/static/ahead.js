@@ -34,10 +34,23 @@
       return `${this.data.folder}/${this.data.files[this.data.pictures[this.index(places)]]}`;
     }
 
-    go(places) {
+    // what stands at its end stays at its end where the picture moves that end, and nothing stands beyond it
+    settled(asked) {
+      const places = [...asked];
       const { controls } = this.data.panel;
+      for (const [i, top] of this.places ? this.data.tops[this.index(this.places)] : []) {
+        if (places[i] === top) places[i] = controls[i].stops.length - 1;
+      }
+      for (const [i, top] of this.data.tops[this.index(places)]) places[i] = Math.min(places[i], top);
+      return places;
+    }
+
+    go(asked) {
+      const { controls } = this.data.panel;
+      const places = this.settled(asked);
       const at = this.index(places);
       this.places = places;
+      this.state.limits = Object.fromEntries(this.data.tops[at].map(([i, top]) => [controls[i].name, controls[i].stops[top]]));
       this.state.values = Object.fromEntries(controls.map(({ name, stops }, i) => [name, stops[places[i]]]));
       this.state.off = this.data.off[at].map((i) => controls[i].name);
       this.state.caption = this.data.lines[at];

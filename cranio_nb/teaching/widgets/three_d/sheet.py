@@ -15,8 +15,9 @@ from ....drawing.canvas_axes import Chart
 from ....drawing.palette import BLACK, BONE, ORANGE, PROSTHESIS, SKY, WHITE
 from ....methods.dnurbs import method as dnurbs
 from ....methods.dnurbs import sheet_motion
-from ....methods.dnurbs.sheet import Sheet
-from ....methods.dnurbs.sheet_motion import Dynamics, Motion, Setting
+from ....methods.dnurbs.sheet import Sheet, Springs, settle
+from ....methods.dnurbs.sheet_energy import Dynamics, Setting
+from ....methods.dnurbs.sheet_motion import Motion
 from ....opening import Opening
 from ....prosthesis import Prosthesis
 from ....vault import radius_measurement
@@ -66,9 +67,11 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     Panel
         Controls ``wavelength_mm``, ``mass``, ``damping`` and ``step``.
     """
-    # on few rays a whole motion takes seconds; it is kept for each setting
+    # on few rays; what holds the sheet is the same for all settings, and a motion is kept for each
     scene = make_scene(radius_measurement.measure_around(bone, opening), bone, truth, _EVERY)
-    run = lru_cache(maxsize=16)(lambda **values: relax_sheet(scene.radius_map, **values))
+    held = dnurbs.hold(scene.radius_map, scene.radius_map.outer, _SPAN)
+    setting = lru_cache(maxsize=32)(lambda wavelength_mm: settle_sheet(scene.radius_map, *held, wavelength_mm))
+    run = lru_cache(maxsize=32)(lambda wavelength_mm, **values: relax_sheet(setting(wavelength_mm), Dynamics(**values)))
     controls = (
         Slider("wavelength_mm", "wavelength that is halved: rigidity", 5, 80, 20, unit="mm", log=True, ahead=0),
         Slider("mass", "\N{GREEK SMALL LETTER MU}: mass per parameter area", 0.0, 10.0, 1.0, 0.5, ahead=0),
@@ -81,29 +84,49 @@ def elastic_sheet(bone: Volume, opening: Opening, truth: Prosthesis | None = Non
     )
     presets = {"heavier": {"mass": 3.0}, "more friction": {"damping": 10.0}, "stiffer": {"wavelength_mm": 80.0}}
     return Panel(
-        controls, lambda step, **values: _view(scene, run(**values), step), alt=alt, presets=presets, slow=True
+        controls,
+        lambda step, **values: _view(scene, run(**values), step),
+        alt=alt,
+        presets=presets,
+        slow=True,
+        ahead="wavelength_mm",
     )
 
 
-def relax_sheet(radius_map: RadiusMap, *, wavelength_mm: float, mass: float, damping: float) -> Way:
-    """Let the outer sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps.
+def settle_sheet(radius_map: RadiusMap, springs: Springs, natural: Sheet, wavelength_mm: float) -> Setting:
+    """What acts on a sheet of some rigidity: springs as weak as the method makes them where bone is off the vault.
 
     Parameters
     ----------
     radius_map : RadiusMap
-        Of few rays, or it takes long.
+    springs, natural
+        From `dnurbs.hold`.
     wavelength_mm : float
         Ripples of this length are halved.
-    mass, damping : float
-        Per parameter area.
+
+    Returns
+    -------
+    Setting
+        As the method fits it.
+    """
+    material = dnurbs.plate_over(radius_map, natural.spans, wavelength_mm=wavelength_mm)
+    return Setting(settle(springs, natural, material, rounds=dnurbs.ROUNDS)[1], natural, material)
+
+
+def relax_sheet(setting: Setting, dynamics: Dynamics) -> Way:
+    """Let a sheet go from too deep in the head, weights frozen, at most `MAX_STEPS` steps.
+
+    Parameters
+    ----------
+    setting : Setting
+        What acts on it.
+    dynamics : Dynamics
+        Its mass and damping.
 
     Returns
     -------
     Way
     """
-    # springs and natural shape as the method fits them, then let go from too deep
-    setting = dnurbs.fit(radius_map, wavelength_mm=wavelength_mm, tension_mm2=0.0, span_mm=_SPAN).settings[0]
-    dynamics = Dynamics(mass=mass, damping=damping)
     deep = replace(setting.natural, control=setting.natural.control * _DEEP)
     motions = [sheet_motion.start(deep, setting, dynamics)]
     sheet_motion.relax(
@@ -115,14 +138,15 @@ def relax_sheet(radius_map: RadiusMap, *, wavelength_mm: float, mass: float, dam
 def _view(scene: Scene, way: Way, step: int) -> View:
     """Net and sheet at a step, a cut, and the energy."""
     last = len(way.motions) - 1
-    now = way.motions[min(step, last)]
+    step = min(step, last)
+    now = way.motions[step]
     canvas = Canvas(WIDTH, HEIGHT)
     _draw_net(canvas, way, now.sheet, scene.radius_map.grid.axes)
     _draw_cut(canvas, way, now.sheet)
-    _draw_energy(canvas, way, min(step, last))
+    _draw_energy(canvas, way, step)
     # the numbers of this step, and how far the sheet is off in the hole
     state = "at rest" if now.converged else "not at rest"
-    line = f"Step {min(step, last)} of {last}, {state}: energy {now.energy:.0f} mm\N{SUPERSCRIPT FOUR}"
+    line = f"Step {step} of {last}, {state}: energy {now.energy:.0f} mm\N{SUPERSCRIPT FOUR}"
     line += f", moved {now.moved:.2f} mm at most" if now.n_iter else ""
     hole = scene.radius_map.hole
     off = (dnurbs.radii_of(now.sheet, scene.radius_map) - scene.true)[hole]
