@@ -88,6 +88,35 @@ def measure_along(radius_map: RadiusMap, bone: Volume, *, min_width_mm: float = 
     return RadiusMap(grid, outer=outer, inner=inner, hole=lacking)
 
 
+def firmness(radius_map: RadiusMap, bone: Volume) -> NDArray[np.float64]:
+    """How well the mask tells the radii: the inverse variance of a surface that is known to a voxel.
+
+    Parameters
+    ----------
+    radius_map : RadiusMap
+    bone : Volume
+        The mask that was measured.
+
+    Returns
+    -------
+    ndarray, shape (M, M)
+        1 along the voxels' short side, less across slices: a voxel's width w along a ray gives a variance of w^2 / 12.
+
+    Examples
+    --------
+    Slices of 3 mm and pixels of 1 mm, looked at from below and from the side:
+
+    >>> bone = Volume(np.zeros((2, 2, 2), bool), np.array([[0, 0, 1, 0], [0, 1, 0, 0], [3, 0, 0, 0], [0, 0, 0, 1.0]]))
+    >>> rays = [RayGrid(np.zeros(3), np.roll(np.eye(3), by, axis=0), 0.1, n=1) for by in (0, 1)]
+    >>> one = np.ones((1, 1))
+    >>> maps = [RadiusMap(ray, outer=one, inner=one, hole=one > 1) for ray in rays]
+    >>> [float(firmness(m, bone)[0, 0].round(3)) for m in maps]
+    [0.111, 1.0]
+    """
+    width = np.linalg.norm(radius_map.grid.directions @ bone.edges.T, axis=-1)
+    return (bone.spacing.min() / width) ** 2
+
+
 def _check_hole(grid: RayGrid, hole: NDArray[np.bool_], seen: NDArray[np.bool_]) -> None:
     """Refuse an opening that rays do not see as a hole with bone around it."""
     if hole.sum() < _LEAST_RAYS:
