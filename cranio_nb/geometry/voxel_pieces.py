@@ -1,4 +1,4 @@
-"""Connected pieces of a patch of voxels: the one that fills an opening is kept, the others are dropped."""
+"""Connected pieces of voxels: the one of a patch that fills an opening, and those that reach the edge of a slice."""
 
 from __future__ import annotations
 
@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..volume import Volume
+
+SAME_SLICE: NDArray[np.bool_] = np.pad(ndimage.generate_binary_structure(2, 1)[None], ((1, 1), (0, 0), (0, 0)))
+"""For `scipy.ndimage.label`: neighbours share an edge within their slice."""
 
 
 def keep_main_piece(patch: NDArray[np.bool_], opening: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -96,3 +99,25 @@ def _span(hit: NDArray[np.bool_]) -> slice:
     """From the first to the last hit."""
     at = np.flatnonzero(hit)
     return slice(int(at[0]), int(at[-1]) + 1) if len(at) else slice(0, 0)
+
+
+def edge_labels(labels: NDArray[np.integer]) -> NDArray[np.integer]:
+    """Labels of what reaches the edge of its slice, and so lies outside: no holes.
+
+    Parameters
+    ----------
+    labels : ndarray of int, shape (P, R, C)
+        As of `scipy.ndimage.label`.
+
+    Returns
+    -------
+    ndarray of int, shape (n,)
+        In order, each once.
+
+    Examples
+    --------
+    >>> edge_labels(np.array([[[1, 0, 0], [0, 2, 3], [0, 0, 0]]]))
+    array([0, 1, 3])
+    """
+    edges = (labels[:, 0], labels[:, -1], labels[:, :, 0], labels[:, :, -1])
+    return np.unique(np.concatenate([edge.ravel() for edge in edges]))

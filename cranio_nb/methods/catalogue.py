@@ -5,7 +5,7 @@ opening, in their order. Its options are its keyword-only parameters, each with 
 `Option`: what it means, its range and its unit. Nothing is loaded before a method is used.
 
 Another package offers a method by an entry point in its ``pyproject.toml`` that names a module with the function
-``pieces`` and, where it has presets, the dict ``PRESETS``::
+``pieces`` and, where it has them, the dict ``PRESETS`` and the `Work` ``WORK``::
 
     [project.entry-points."cranio_nb.methods"]
     mine = "my_package.mine"
@@ -21,7 +21,7 @@ from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from ..errors import InputRefused
-from ..options import Option, declared
+from ..options import Option, Work, declared
 from ..volume import Volume
 from .piece import Piece
 
@@ -59,12 +59,14 @@ class Method:
         the defaults of the options.
     options : dict
         Name -> what is declared of it, as far as it was read off already (`options_of`).
+    work : Work or None
     """
 
     name: str
     pieces: Pieces
     presets: Mapping[str, Preset]
     options: Mapping[str, Option] = field(default_factory=dict)
+    work: Work | None = None
 
 
 _added: dict[str, Method] = {}  # by `add_method`, in this process
@@ -184,7 +186,8 @@ def find_method(name: str) -> Method:
             raise InputRefused("UnknownMethod", f"There is no method named {name!r}.", f"Known are: {known}.")
         path = offered[name].value
     module = import_module(path)
-    return _checked(name, getattr(module, "pieces", None), getattr(module, "PRESETS", {}))
+    made = _checked(name, getattr(module, "pieces", None), getattr(module, "PRESETS", {}))
+    return replace(made, work=getattr(module, "WORK", None))
 
 
 def added_methods() -> tuple[Method, ...]:
@@ -292,7 +295,7 @@ def options_of(name: str) -> dict[str, Option]:
 
 
 def check_options(name: str, options: Mapping[str, Any]) -> None:
-    """Refuse options that a method does not have, or values of another kind or beyond what is declared.
+    """Refuse options that a method does not have, values beyond what is declared, and too much work together.
 
     Parameters
     ----------
@@ -303,14 +306,16 @@ def check_options(name: str, options: Mapping[str, Any]) -> None:
     Raises
     ------
     InputRefused
-        ``UnknownOption`` or ``BadOption``.
+        ``UnknownOption``, ``BadOption`` or ``TooMuchWork``.
     """
     known = options_of(name)
     for option, value in options.items():
         if option not in known:
-            remedy = f"It has: {', '.join(known)}."
-            raise InputRefused("UnknownOption", f"The method {name} has no option {option[:_NAME]!r}.", remedy)
+            message = f"The method {name} has no option {option[:_NAME]!r}."
+            raise InputRefused("UnknownOption", message, f"It has: {', '.join(known)}.")
         known[option].check(f"The option {option} of {name}", value)
+    if work := find_method(name).work:
+        work.check({option: what.default for option, what in known.items()} | dict(options))
 
 
 def _offered() -> dict[str, EntryPoint]:

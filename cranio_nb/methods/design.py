@@ -84,6 +84,7 @@ def design(
     _check_openings(bone, openings)
     # what is asked for goes before the preset, and the preset before the defaults
     parameters = default_options(method) | preset_options(method, preset, bone) | options
+    check_options(method, parameters)  # a preset may add to what was asked for
     own = {name: value for name, value in parameters.items() if name not in COMMON}
     pieces = find_method(method).pieces(bone, openings, **own)
     return assemble(bone, openings, pieces, method=method, parameters=parameters, progress=progress)
@@ -196,7 +197,7 @@ def check_request(method: str, preset: str, options: dict[str, Any]) -> None:
     Raises
     ------
     InputRefused
-        ``UnknownMethod``, ``UnknownPreset``, ``UnknownOption`` or ``BadOption``.
+        ``UnknownMethod``, ``UnknownPreset``, ``UnknownOption``, ``BadOption`` or ``TooMuchWork``.
     """
     check_preset(method, preset)
     check_options(method, options)

@@ -18,7 +18,8 @@ be curved as the other side is; it does not depend on where the other side lies,
 is a little off leave no step at the rim. It is left out where the mirrored skull lies more than 1.3 mm off the skull:
 then the plane is wrong, or the head has none. The lengths a, b, c (mm) say over what distance bone is smoothed; across
 the hole only their ratios matter. The weights w and v drop bone that does not belong to the vault, ridges, vessels and
-sinuses (Cauchy's weights, iterated). Each surface is one sparse symmetric system, solved directly.
+sinuses (Cauchy's weights, iterated); w is also smaller where rays cross thick slices, since a mask tells less there.
+Each surface is one sparse symmetric system, solved directly.
 
 Source: thin plates in cranioplasty are Carr, Fright and Beatson 1997 (doi 10.1109/42.563663): radial basis functions
 on a depth map, second order, interpolating. Ours are the radius map, finite differences in place of radial
@@ -141,6 +142,7 @@ def bend(
     *,
     like: Array | None = None,
     expected: Array | None = None,
+    firmness: Array | None = None,
     second_mm: float = 1.3,
     third_mm: float = 1.8,
     mirror_mm: float = 1.6,
@@ -159,6 +161,8 @@ def bend(
         A map of the same curvature, up to anything; nan where unknown.
     expected : ndarray, shape (M, N), optional
         A map to bend less far from, known everywhere; springs hold the plate to it in the hole.
+    firmness : ndarray, shape (M, N), optional
+        The weights w before stray bone lowers them, as inverse variances are; 1 when not given.
     second_mm, third_mm, mirror_mm : float
         The lengths a, b and c of the energy, mm; 0 for none.
 
@@ -186,22 +190,23 @@ def bend(
     # springs s to the expected radii, in the hole only: bone needs none
     if expected is not None:
         stiffness = stiffness + sparse.diags_array(_SPRING * hole[beside])
-    out[beside] = base[beside] + _settle(stiffness, push, data, known)
+    sure = known.astype(float) if firmness is None else np.where(known, firmness[beside], 0.0)
+    out[beside] = base[beside] + _settle(stiffness, push, data, sure)
     return out
 
 
-def _settle(stiffness: sparse.csr_array, push: Array, data: Array, known: NDArray[np.bool_]) -> Array:
-    """The minimum of the energy, with weights that fall with the residuals they leave."""
-    weight = known.astype(float)
+def _settle(stiffness: sparse.csr_array, push: Array, data: Array, sure: Array) -> Array:
+    """The minimum of the energy, with weights that fall from `sure` (0 where nothing is known) with the residuals."""
+    weight = sure
     for hold in _HOLDS:  # first a stiff plate, which no stray bone can bend
         # (S + w) g = w f + push, the zero of the energy's slope
         held = (stiffness + sparse.diags_array(hold * weight + _FAINT)).tocsc()
         factors = splu(held, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         g = factors.solve(hold * weight * data + push)
         # Cauchy's weights at three standard deviations, these from the median
-        residual = np.abs(g - data)
-        spread = max(1.4826 * float(np.median(residual[known])), _LEAST_SPREAD)
-        weight = known / (1 + (residual / (3 * spread)) ** 2)
+        residual = np.abs(g - data) * np.sqrt(sure)
+        spread = max(1.4826 * float(np.median(residual[sure > 0])), _LEAST_SPREAD)
+        weight = sure / (1 + (residual / (3 * spread)) ** 2)
     return g
 
 
@@ -274,12 +279,14 @@ def _plate(
     nodes = max(1, round(_NODES / radius_map.step_mm))
     hole = thin_map(radius_map.hole.astype(float), nodes) > 1e-9  # more than what the filter leaves of rounding
     rim = ndimage.distance_transform_edt(~radius_map.hole) * radius_map.step_mm <= _RIM
+    firmness = thin_map(radius_measurement.firmness(radius_map, bone), nodes)
     radii = []
     # each surface by itself
     for i, radius in enumerate((radius_map.outer, radius_map.inner)):
         known = np.where(rim, np.nan, radius)
         like, likely = (None if maps is None else thin_map(maps[i], nodes) for maps in (mirrored, expected))
-        plate = bend(thin_map(known, nodes), hole, radius_map.step_mm * nodes, like=like, expected=likely, **lengths)
+        mm = radius_map.step_mm * nodes
+        plate = bend(thin_map(known, nodes), hole, mm, like=like, expected=likely, firmness=firmness, **lengths)
         radii.append(np.where(radius_map.hole, _refined(plate, nodes, radius_map.hole.shape), np.nan))
     return Plate(radius_map, radii[0], radii[1], mirrored, expected)
 

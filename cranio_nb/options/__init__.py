@@ -8,5 +8,6 @@ sliders of the panels and the ranges of a study (`methods.catalogue.options_of`)
 
 from .option import THRESHOLD, Option
 from .signature import declared
+from .work import Work
 
-__all__ = ["THRESHOLD", "Option", "declared"]
+__all__ = ["THRESHOLD", "Option", "Work", "declared"]

@@ -13,23 +13,13 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused
+from ..geometry.voxel_pieces import SAME_SLICE, edge_labels
+from ..geometry.within_skin import within_skin
 from ..options import THRESHOLD
 from ..volume import Volume
 
 BONE_HU: float = THRESHOLD.default
 """Lowest HU of bone (the paper, section 2)."""
-
-AIR_HU = -300.0
-"""HU below which a voxel holds mostly air."""
-_COARSE_MM = 3.0  # between the voxels among which the skin is sought
-_AIR_GAP_MM = 6.0  # width of the gaps through which the air around the head is followed; sinuses open through less
-_WEDGE_MM = 24.0  # as far it is followed on through narrower gaps
-_BAR_MM = 24.0  # width of the bars and plates that are taken off the head; the head itself is wider everywhere
-_MARGIN_MM = 3.0  # beyond the skin, which the coarse voxels miss by as much
-_LEAST_SOFT = 0.5  # of what lies within the skin; a dry skull is full of air
-_LEAST_BONE = 0.2  # of all bone that lies within the skin, else what was found is not a head
-_SAME_SLICE = np.zeros((3, 3, 3), bool)  # neighbours share an edge within their slice
-_SAME_SLICE[1] = ndimage.generate_binary_structure(2, 1)
 
 
 def segment(
@@ -185,59 +175,6 @@ def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDA
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 
 
-def within_skin(mask: NDArray[np.bool_], ct: Volume) -> NDArray[np.bool_]:
-    """Take off the head what stands in the air around it: couch, head holder, frames, also where they touch it.
-
-    Parameters
-    ----------
-    mask : ndarray of bool, shape (P, R, C)
-        Thresholded CT.
-    ct : Volume
-        HU: shows where skin ends and air begins.
-
-    Returns
-    -------
-    ndarray of bool, shape (P, R, C)
-        `mask` within the skin; all of it where no head in its skin is seen (a dry skull).
-
-    Notes
-    -----
-    Around the head is the air that is met from the edges of the slices through gaps of some width. What remains is
-    opened (an erosion, then a dilation) by a box wider than bars and plates and narrower than any part of the head.
-
-    Examples
-    --------
-    A head of 80 mm, and a plate of 3 mm on which it lies:
-
-    >>> hu = np.full((40, 60, 60), -1000)
-    >>> hu[:, 20:40, 20:40], hu[:, 22:38, 22:38], hu[:, 40] = 40, 900, 900
-    >>> kept = within_skin(hu >= 400, Volume(hu, np.diag([4.0, 4, 4, 1])))
-    >>> bool(kept[:, 22:38, 22:38].all()), int(kept[:, 42:].sum())
-    (True, 0)
-    """
-    every = np.maximum(1, _COARSE_MM // ct.spacing).astype(int)
-    coarse = tuple(slice(None, None, n) for n in every)
-    air, bone = ct.voxels[coarse] < AIR_HU, mask[coarse]
-    head = _inside_air(air, ct.spacing * every)
-    if not head.any() or air[head].mean() > 1 - _LEAST_SOFT or not (bone & ~head).any():
-        return mask
-    if np.count_nonzero(bone & head) < _LEAST_BONE * np.count_nonzero(bone):
-        return mask
-    for axis, (n, length) in enumerate(zip(every, mask.shape, strict=True)):
-        head = head.repeat(n, axis).take(range(length), axis)
-    return mask & head
-
-
-def _inside_air(air: NDArray[np.bool_], spacing: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """What the air around the head encloses, without bars and plates narrower than `_BAR_MM`."""
-    labels, _ = ndimage.label(~_dilate(~air, _AIR_GAP_MM, spacing))
-    around = np.isin(labels, np.setdiff1d(_border_labels(labels), 0))
-    # on into the wedge between the head and what it touches, not up to the sinuses
-    into = int(_WEDGE_MM / spacing.min())
-    body = ~ndimage.binary_dilation(_dilate(around, _AIR_GAP_MM, spacing) & air, iterations=into, mask=air)
-    return _dilate(_dilate(_erode(body, _BAR_MM, spacing), _BAR_MM, spacing) & body, 2 * _MARGIN_MM, spacing)
-
-
 def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArray[np.bool_]:
     """Keep the skull and its loose pieces; drop islands, and what stands beside it.
 
@@ -304,17 +241,11 @@ def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.boo
     >>> fill_holes(mask, max_hole_px=4)[0, 2].astype(int)
     array([1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1])
     """
-    labels, n_holes = ndimage.label(~mask, _SAME_SLICE)
+    labels, n_holes = ndimage.label(~mask, SAME_SLICE)
     small = np.bincount(labels.ravel(), minlength=n_holes + 1) <= max_hole_px
     small[0] = False  # the bone itself
-    small[_border_labels(labels)] = False
+    small[edge_labels(labels)] = False
     return mask | small[labels]
-
-
-def _border_labels(labels: NDArray) -> NDArray:
-    """Labels that touch the edge of their slice: outside, not holes."""
-    edges = (labels[:, 0], labels[:, -1], labels[:, :, 0], labels[:, :, -1])
-    return np.unique(np.concatenate([edge.ravel() for edge in edges]))
 
 
 def _n_voxels(box: tuple[slice, ...]) -> int:
@@ -325,19 +256,3 @@ def _n_voxels(box: tuple[slice, ...]) -> int:
 def _is_inside(inner: tuple[slice, ...], outer: tuple[slice, ...]) -> bool:
     """Whether the middle of one box lies within another."""
     return all(o.start <= (i.start + i.stop) / 2 <= o.stop for i, o in zip(inner, outer, strict=True))
-
-
-def _erode(mask: NDArray[np.bool_], width_mm: float, spacing: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Erosion by a box. The first and last slice go on beyond the image, for the scan ends within the body."""
-    mode = ["nearest", "constant", "constant"]
-    return ndimage.minimum_filter(mask.view(np.uint8), _box(width_mm, spacing), mode=mode).view(bool)
-
-
-def _dilate(mask: NDArray[np.bool_], width_mm: float, spacing: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Dilation by the same box."""
-    return ndimage.maximum_filter(mask.view(np.uint8), _box(width_mm, spacing), mode="nearest").view(bool)
-
-
-def _box(width_mm: float, spacing: NDArray[np.float64]) -> list[int]:
-    """Voxels along each axis of a box with a voxel in its middle."""
-    return [2 * int(width_mm / 2 / step_mm) + 1 for step_mm in spacing]

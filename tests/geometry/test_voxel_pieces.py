@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cranio_nb.geometry.voxel_pieces import keep_main_piece, keep_solid_piece
+from cranio_nb.geometry.voxel_pieces import edge_labels, keep_main_piece, keep_solid_piece
 from cranio_nb.volume import Volume
 
 GRID = np.diag([0.5, 0.5, 0.5, 1])
@@ -61,3 +61,11 @@ def test_a_solid_piece_keeps_off_bone_and_away_from_holes_it_does_not_reach():
     assert not (keep_solid_piece(patch, Volume(opening, GRID), Volume(bone, GRID)) & bone).any()
     empty = Volume(np.zeros_like(bone), GRID)
     assert not keep_solid_piece(patch, empty, Volume(bone, GRID)).any()
+
+
+def test_pieces_at_the_edge_of_their_slice_are_told_from_those_at_the_ends_of_the_scan():
+    labels = np.zeros((3, 5, 5), int)
+    for label, (row, col) in enumerate([(0, 2), (4, 2), (2, 0), (2, 4)], 1):
+        labels[1, row, col] = label
+    labels[0, 2, 2], labels[2, 2, 2], labels[1, 2, 2] = 5, 6, 7
+    assert edge_labels(labels).tolist() == [0, 1, 2, 3, 4]

@@ -1,7 +1,9 @@
 """Every option of every method at the ends of its range and beyond; whatever JSON holds is run or refused."""
 
 import json
+from collections import Counter
 from contextlib import suppress
+from itertools import product
 
 import pytest
 from hypothesis import HealthCheck, given, settings
@@ -9,7 +11,9 @@ from hypothesis import strategies as st
 
 import cranio_nb as cn
 from cranio_nb.errors import CranioError, InputRefused
-from cranio_nb.methods.catalogue import METHODS, check_options, default_options, options_of, preset_options
+from cranio_nb.methods.catalogue import METHODS, check_options, default_options, find_method, options_of, preset_options
+from cranio_nb.stages import deformable_model
+from data_synth import phantom_case
 
 ENDS = [
     (method, name, end)
@@ -64,6 +68,51 @@ def test_beyond_its_range_an_option_is_refused_with_the_range(method, skull):
 def test_presets_lie_within_the_ranges(method, skull):
     preset = "paper" if method in ("slicewise", "hull", "reflection") else "default"
     check_options(method, preset_options(method, preset, skull()))
+
+
+def ends_of(name, option):
+    if option.kind == "true or false":
+        return [False, True]
+    return [option.low, option.default, option.high] if option.kind != "text" else [option.default]
+
+
+@pytest.mark.parametrize(
+    ("method", "costly"),
+    [
+        ("slicewise", ("axial", "directions", "n_snaxels", "max_iter")),
+        ("dnurbs", ("free_weights", "span_mm", "max_iter")),
+    ],
+)
+def test_options_at_their_ends_together_are_refused_where_their_work_is_beyond_what_one_alone_asks_for(method, costly):
+    options, work, accepted, refused = options_of(method), find_method(method).work, [], []
+    for values in product(*(ends_of(name, options[name]) for name in costly)):
+        asked = dict(zip(costly, values, strict=True))
+        amount = work.amount(default_options(method) | asked)
+        try:
+            check_options(method, asked)
+            accepted.append(amount)
+        except InputRefused as error:
+            assert error.code == "TooMuchWork" and error.remedy
+            refused.append(amount)
+    assert max(accepted) <= work.most < min(refused)
+    assert max(refused) > 3 * work.most  # what would be computed else
+
+
+@pytest.mark.parametrize("axial", [False, True])
+@pytest.mark.parametrize(("directions", "n_snaxels", "max_iter"), [(1, 5, 9), (3, 21, 4)])
+def test_no_slice_takes_more_steps_of_points_than_are_counted(axial, directions, n_snaxels, max_iter, monkeypatch):
+    asked = {"axial": axial, "directions": directions, "n_snaxels": n_snaxels, "max_iter": max_iter}
+    done, solve = [], deformable_model._solve_curves
+    monkeypatch.setattr(
+        deformable_model, "_solve_curves", lambda factor, right: [done.append(right.shape[:2]), solve(factor, right)][1]
+    )
+    case = phantom_case("tiny", "burr_hole", 0)
+    made = cn.design(cn.Volume(case.bone, case.affine), method="slicewise", tol=1e-9, **asked)
+    slices = [one for one in made.record["slices"] if one["status"] == "balloon"]
+    per_direction = max(Counter(one.get("direction", 0) for one in slices).values())
+    most = find_method("slicewise").work.amount(default_options("slicewise") | asked)
+    steps = sum(curves * (points + 2) for curves, points in done)  # the ends are not solved for
+    assert 0 < steps <= 2 * per_direction * most  # an outer and an inner curve
 
 
 NUMBERS = st.floats() | st.integers() | st.integers(-5, 50) | st.floats(-1, 50)

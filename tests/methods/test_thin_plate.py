@@ -55,6 +55,24 @@ def test_without_stiffness_the_plate_lies_on_the_bone():
     assert np.abs(stiff - WAVE)[BESIDE].mean() > 10 * np.abs(soft - WAVE)[BESIDE].mean()
 
 
+@pytest.mark.parametrize("firmness", [1 / 16, 16.0])
+def test_data_half_as_firm_are_smoothed_over_a_length_that_is_longer_by_a_fourth_root(firmness):
+    bumps = known(WAVE + np.random.default_rng(0).normal(0, 0.5, WAVE.shape))
+    weighted = bend(bumps, HOLE, MM, firmness=np.full(WAVE.shape, firmness), **only(second_mm=3.0))
+    longer = bend(bumps, HOLE, MM, **only(second_mm=3.0 * firmness**-0.25))
+    np.testing.assert_allclose(weighted[HOLE | BESIDE], longer[HOLE | BESIDE], atol=1e-3)
+
+
+def test_what_is_known_less_firmly_bends_the_plate_less():
+    tilted = WAVE + np.where(V > 0, 0.03 * V, 0)  # one side is off
+    off = [
+        np.abs(bend(known(tilted), HOLE, MM, firmness=np.where(V > 0, low, 1.0)) - bend(known(WAVE), HOLE, MM))
+        for low in (1e-4, 0.1, 1.0)
+    ]
+    sums = [one[HOLE & (V < 0)].sum() for one in off]
+    assert sums[0] < sums[1] < sums[2]
+
+
 @pytest.mark.parametrize("turn", [lambda a: a[::-1], lambda a: a[:, ::-1], lambda a: a.T, np.rot90])
 def test_a_turned_or_mirrored_map_gets_the_turned_or_mirrored_plate(turn):
     like = WAVE + 0.3 * np.sin(U / 9)

@@ -32,7 +32,7 @@ from scipy import ndimage
 
 from ...geometry import voxel_pieces
 from ...opening import Opening
-from ...options import Option
+from ...options import Option, Work
 from ...vault import radius_measurement, radius_voxels
 from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
@@ -46,6 +46,15 @@ ROUNDS = 5
 """Of weakening springs and settling again."""
 _SPHERE_ROUNDS = 8  # of fitting the sphere to what is not far off it
 _FIND_STEPS = 6  # of looking up where a ray meets the sheet
+_SIDE_MM = 100.0  # of a square of sheet whose control points are counted
+
+WORK = Work(
+    "With free weights the steps of all control points of 100 x 100 mm",
+    40 * (_SIDE_MM / 8) ** 2,  # free weights with all else at its default
+    lambda options: options["max_iter"] * (_SIDE_MM / options["span_mm"]) ** 2 if options["free_weights"] else 0,
+    "Lower max_iter, or give a wider span_mm.",
+)
+"""A step solves for every control point; without free weights there are no steps."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ from typing import Annotated, Any
 
 from ...geometry import voxel_pieces
 from ...opening import Opening
-from ...options import Option
+from ...options import Option, Work
 from ...stages import deformable_model
 from ...volume import Volume
 from ..piece import Piece
@@ -54,6 +54,14 @@ def paper_options(bone: Volume) -> dict[str, Any]:
 
 PRESETS = {"paper": paper_options}
 """The method as published in 2011."""
+
+WORK = Work(
+    "In each slice, the steps of all points of its balloons",
+    2_500_000,  # one option may be at its end beside the defaults of the others
+    lambda options: (1 if options["axial"] else options["directions"]) * options["n_snaxels"] * options["max_iter"],
+    "Lower max_iter, n_snaxels or directions.",
+)
+"""The balloons that do not come to rest decide how long a design can take."""
 
 
 def pieces(
