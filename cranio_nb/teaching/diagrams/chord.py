@@ -129,21 +129,14 @@ def chord_frame(gap: Gap, *, expected_deg: tuple[float, float] | None = None) ->
     """
     figure = marks.sheet(_HEIGHT_IN)
     ax = draw_gap(figure, gap)
-    length, angles = gap.frame.length, gap.angles
-    for i, (x, lean) in enumerate(zip((0.0, length), angles, strict=True)):
-        marks.angle(ax, (x, 0), _RADIUS * length, lean, TANGENT)
-        text = f"{_THETA[i]} = {np.degrees(lean):.1f}\N{DEGREE SIGN}"
-        if expected_deg is not None:
-            text += (" ", "\n")[i] + f"(expect {expected_deg[i]:.1f}\N{DEGREE SIGN})"
-        # below the chord at the first end, above the arc at the last
-        at = ((0.16 * length, -0.04 * length), (1.06 * length, 0.165 * length))[i]
-        marks.word(ax, at, text, colour=TANGENT, ha=("left", "center")[i], va=("center", "bottom")[i])
+    draw_angles(ax, gap, expected_deg)
     alt = (
         "A gap in the bone, turned so that its chord L lies level and the outside is above. Green arrows leave the two "
         "ends at the angles theta0 and theta1 above the chord; the dashed start curve follows them."
     )
-    theta0, theta1 = np.degrees(angles)
-    return marks.finished(figure, alt, f"L {length:.1f} px, theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees")
+    theta0, theta1 = np.degrees(gap.angles)
+    line = f"L {gap.frame.length:.1f} px, theta0 {theta0:.1f}, theta1 {theta1:.1f} degrees"
+    return marks.finished(figure, alt, line)
 
 
 def chord_at_rest(gap: Gap, pressure: float, *, n: int = 21) -> Described:
@@ -246,6 +239,28 @@ def draw_gap(figure: Figure, gap: Gap, *, named: bool = True) -> Axes:
     marks.sides(ax, marks.chord_sides(frame))
     marks.scale(ax, 10 / gap.px, "10 mm")
     return ax
+
+
+def draw_angles(ax: Axes, gap: Gap, expected_deg: tuple[float, float] | None) -> None:
+    """Draw theta0 and theta1 as arcs, with their values.
+
+    Parameters
+    ----------
+    ax : Axes
+        In chord px.
+    gap : Gap
+    expected_deg : tuple of float or None
+        The angles to expect.
+    """
+    length = gap.frame.length
+    for i, (x, lean) in enumerate(zip((0.0, length), gap.angles, strict=True)):
+        marks.angle(ax, (x, 0), _RADIUS * length, lean, TANGENT)
+        text = f"{_THETA[i]} = {np.degrees(lean):.1f}\N{DEGREE SIGN}"
+        if expected_deg is not None:
+            text += (" ", "\n")[i] + f"(expect {expected_deg[i]:.1f}\N{DEGREE SIGN})"
+        # below the chord at the first end, above the arc at the last
+        at = ((0.16 * length, -0.04 * length), (1.06 * length, 0.165 * length))[i]
+        marks.word(ax, at, text, colour=TANGENT, ha=("left", "center")[i], va=("center", "bottom")[i])
 
 
 def draw_balloon(ax: Axes, curve: Points) -> None:

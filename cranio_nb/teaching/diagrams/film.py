@@ -21,7 +21,6 @@ from ..widgets.inflation import elastic_energy
 from . import chord, marks
 
 _HEIGHT_IN = 3.4
-_CAPTION = 0.1  # of the height, above the gap
 _GROWS = 1.22  # from the step of a frame to that of the next: what changes fast is shown in full
 _MS, _FIRST_MS, _LAST_MS = 140, 900, 2800  # how long a frame stays
 _COLOURS = 64

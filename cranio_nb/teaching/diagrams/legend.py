@@ -14,6 +14,7 @@ from ...drawing.palette import (
     BONE,
     INNER,
     MEASURE,
+    NOTE_PT,
     OUTER,
     PATCH,
     PRESSURE,
@@ -61,7 +62,7 @@ def legend() -> Described:
         x, y = 0.12 + _COLUMN * (i // _ROWS), _ROW * (_ROWS - i % _ROWS) - 0.15
         _mark(ax, kind, colour, x, y)
         wide = 0.2 if kind == "letters" else 0.0
-        marks.word(ax, (x + _MARK + 0.14 + wide, y), meaning, size=9.0, ha="left")
+        marks.word(ax, (x + _MARK + 0.14 + wide, y), meaning, size=NOTE_PT, ha="left")
     alt = "Each mark of the drawings beside its meaning: " + ", ".join(meaning for meaning, *_ in MEANINGS) + "."
     return marks.finished(figure, alt, f"{len(MEANINGS)} marks")
 
@@ -73,15 +74,15 @@ def _mark(ax: Axes, kind: str, colour: str, x: float, y: float) -> None:
     if kind == "area":
         ax.fill([x, x + _MARK, x + _MARK, x], [y - 0.11, y - 0.11, y + 0.11, y + 0.11], fc=colour, ec="none")
     elif kind in ("arrow", "hollow"):
-        marks.arrow(ax, *ends, colour, width=2.2, hollow=kind == "hollow")
+        marks.arrow(ax, ends[0], ends[1], colour, width=2.2, hollow=kind == "hollow")
     elif kind == "length":
-        marks.measure(ax, *ends)
+        marks.measure(ax, ends[0], ends[1])
     elif kind == "end":
         ax.plot(*ends.mean(axis=0), marker="o", ms=7, mfc=WHITE, mec=colour, mew=1.5)
     elif kind == "letters":
         marks.word(ax, (x - 0.05, y), "A P L R S I", colour=colour, weight="bold", ha="left")
     elif kind == "snaxels":
-        marks.polyline(ax, np.linspace(*ends, 4), colour, marker="o", ms=4.5, mfc=WHITE, mew=1.5)
+        marks.polyline(ax, np.linspace(ends[0], ends[1], 4), colour, marker="o", ms=4.5, mfc=WHITE, mew=1.5)
     else:
         width = {"broad": 7.0, "chord": 1.3}.get(kind, 2.2)
         marks.polyline(ax, ends, colour, lw=width, ls=dashes.get(kind, "-"))

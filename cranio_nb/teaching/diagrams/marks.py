@@ -295,11 +295,11 @@ def sides(ax: Axes, right_down: NDArray[np.float64]) -> None:
         World directions (LPS) to the right and down.
     """
     right, down = right_down
-    across, up = _INSET_PX / ax.get_window_extent().size
+    width, height = ax.get_window_extent().size
+    across, up = float(_INSET_PX / width), float(_INSET_PX / height)
     places = ((1 - across, 0.5, right), (across, 0.5, -right), (0.5, 1 - up, -down), (0.5, up, down))
     for x, y, direction in places:
-        style = {"transform": ax.transAxes, "weight": "bold"}
-        word(ax, (x, y), side_letter(direction), colour=MEASURE, **style)
+        word(ax, (x, y), side_letter(direction), colour=MEASURE, transform=ax.transAxes, weight="bold")
 
 
 def scale(ax: Axes, length: float, text: str) -> None:
@@ -329,4 +329,5 @@ def polyline(ax: Axes, points: Points, colour: str, **style: Any) -> None:
     **style
         As for ``Axes.plot``.
     """
-    ax.plot(*points.T, **({"color": colour, "lw": 2.2, "solid_capstyle": "round"} | style))
+    line: dict[str, Any] = {"color": colour, "lw": 2.2, "solid_capstyle": "round"} | style
+    ax.plot(*points.T, **line)

@@ -94,8 +94,18 @@ def _lines() -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
     return rings + [(out, np.full(out.shape, spoke)) for spoke in np.linspace(0, 360, _SPOKES, endpoint=False)]
 
 
-def _rim(radius_map: RadiusMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The outline of the hole, as angles from the middle and around it, degrees."""
+def rim_angles(radius_map: RadiusMap) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The outline of the hole of a map.
+
+    Parameters
+    ----------
+    radius_map : RadiusMap
+
+    Returns
+    -------
+    polar_deg, around_deg : ndarray, shape (m,)
+        As `on_surface` takes them.
+    """
     soft = ndimage.gaussian_filter(radius_map.hole.astype(float), 2.0)
     outline = max(find_contours(soft, 0.5), key=len)
     v, u = (outline - (radius_map.grid.n - 1) / 2).T * np.degrees(radius_map.grid.step_rad)
@@ -122,7 +132,7 @@ def _draw_head(figure: Figure, bone: Volume, radius_map: RadiusMap, radius: Arra
         at[(points - grid.centre) @ axes[2] < _TOWARDS_VIEWER * np.linalg.norm(points - grid.centre, axis=1)] = np.nan
         return at
 
-    ax.fill(*placed(*_rim(radius_map)).T, fc=faded(PATCH), ec=BLACK, lw=1.6)
+    ax.fill(*placed(*rim_angles(radius_map)).T, fc=faded(PATCH), ec=BLACK, lw=1.6)
     for line in _lines():
         marks.polyline(ax, placed(*line), MEASURE, lw=1.1)
     _number_places(ax, placed(*np.transpose(_PLACES)))
@@ -137,11 +147,11 @@ def _draw_map(figure: Figure, radius_map: RadiusMap) -> None:
     ax = figure.add_axes((_HALF + 0.015, 0.06, _MAP_SHARE, high))
     beside = np.where(radius_map.hole, np.nan, radius_map.outer)
     shown = ax.imshow(beside, cmap="cividis", origin="lower", extent=(-half, half, -half, half))
-    polar, around = _rim(radius_map)
-    ax.fill(*_flat(polar, around).T, fc=faded(PATCH), ec=BLACK, lw=1.6)
+    polar, around = rim_angles(radius_map)
+    ax.fill(*on_map(polar, around).T, fc=faded(PATCH), ec=BLACK, lw=1.6)
     for line in _lines():
-        marks.polyline(ax, _flat(*line), WHITE, lw=1.0)
-    _number_places(ax, _flat(*np.transpose(_PLACES)))
+        marks.polyline(ax, on_map(*line), WHITE, lw=1.0)
+    _number_places(ax, on_map(*np.transpose(_PLACES)))
     for ring in _RINGS_DEG:
         marks.word(ax, (0, -ring), f"{ring}\N{DEGREE SIGN}", size=NOTE_PT)
     ax.set(xlim=(-half, half), ylim=(-half, half), xticks=(), yticks=())
@@ -151,8 +161,24 @@ def _draw_map(figure: Figure, radius_map: RadiusMap) -> None:
     marks.sides(ax, np.stack([grid.axes[0], -grid.axes[1]]))
 
 
-def _flat(polar_deg: ArrayLike, around_deg: ArrayLike) -> NDArray[np.float64]:
-    """Where places lie on the drawn map, degrees to the right and up: the angle from the middle is kept."""
+def on_map(polar_deg: ArrayLike, around_deg: ArrayLike) -> NDArray[np.float64]:
+    """Where places lie on the drawn map: their angle from the middle is kept.
+
+    Parameters
+    ----------
+    polar_deg, around_deg : array_like, shape (m,)
+        As `on_surface` takes them.
+
+    Returns
+    -------
+    ndarray, shape (m, 2)
+        Degrees to the right and up.
+
+    Examples
+    --------
+    >>> on_map([30.0], [90.0]).round(9).tolist()
+    [[0.0, 30.0]]
+    """
     polar, around = np.broadcast_arrays(np.asarray(polar_deg, float), np.radians(around_deg))
     return np.column_stack([polar * np.cos(around), polar * np.sin(around)])
 

@@ -43,7 +43,7 @@ def boundary_sets(seen: SliceFeatures, bone: NDArray[np.bool_], *, px: float) ->
     figure = marks.sheet(_HEIGHT_IN)
     spine = np.vstack(seen.skeleton)
     whole = _upright(figure, (0.0, 0.0, _LEFT, 1.0), *_around(seen.boundary, _LEFT))
-    _draw(whole, bone, seen, spine, size=1.6)
+    draw_sets(whole, bone, seen, size=1.6)
     marks.sides(whole, _WHOLE_SLICE)
     marks.word(
         whole,
@@ -54,7 +54,7 @@ def boundary_sets(seen: SliceFeatures, bone: NDArray[np.bool_], *, px: float) ->
     marks.scale(whole, 50 / px, "50 mm")
     at = corner_of_window(spine, bone.shape)
     close = _upright(figure, (_LEFT + 0.01, 0.0, 0.99 - _LEFT, 1.0), at, _CLOSE_PX)
-    _draw(close, bone, seen, spine, size=9.5)
+    draw_sets(close, bone, seen, size=9.5)
     _frame_window(whole, close)
     _name_sets(close, seen, spine)
     whole.text(0.01, 0.98, "a slice", transform=whole.transAxes, fontsize=TITLE_PT, weight="bold", va="top")
@@ -102,8 +102,19 @@ def _around(points: Points, share: float) -> tuple[Points, float]:
     return (low + high) / 2 - np.array([aspect, 1.0]) * width / 2, float(width)
 
 
-def _draw(ax: Axes, bone: NDArray[np.bool_], seen: SliceFeatures, spine: Points, *, size: float) -> None:
-    """Bone, filled hull, its edge, spine, and both boundaries, in one plane."""
+def draw_sets(ax: Axes, bone: NDArray[np.bool_], seen: SliceFeatures, *, size: float) -> None:
+    """Draw bone, filled hull, its edge, spine, and both boundaries, in one plane.
+
+    Parameters
+    ----------
+    ax : Axes
+        In px: columns to the right, rows down.
+    bone : ndarray of bool, shape (R, C)
+    seen : SliceFeatures
+    size : float
+        Of a pixel's mark, points.
+    """
+    spine = np.vstack(seen.skeleton)
     limits = ax.get_xlim(), ax.get_ylim()
     rows, cols = bone.shape
     fill_mask(ax, bone, (-0.5, cols - 0.5, rows - 0.5, -0.5), BONE)
