@@ -4,6 +4,7 @@ All are 8 inches wide and speak one language: colours and sizes of `drawing.pale
 """
 
 from .chord import Gap, chord_at_rest, chord_frame
+from .fans import slice_fans
 from .forces import snaxel_forces
 from .legend import legend
 from .pipeline import pipeline
@@ -20,5 +21,6 @@ __all__ = [
     "pipeline",
     "plate_map",
     "ray_fan",
+    "slice_fans",
     "snaxel_forces",
 ]

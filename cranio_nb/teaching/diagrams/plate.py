@@ -11,15 +11,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 from skimage.measure import find_contours
 
-from ...drawing import shading
-from ...drawing.coarse_skull import skull_surface
 from ...drawing.described import Described
 from ...drawing.figures import Axes, Figure
-from ...drawing.palette import BLACK, MEASURE, NOTE_PT, PATCH, SKULL, WHITE, faded, rgb_shares
+from ...drawing.palette import BLACK, MEASURE, NOTE_PT, PATCH, WHITE, faded
 from ...methods.thin_plate import bend
 from ...vault.ray_grid import Array, RadiusMap, RayGrid, filled_from_nearest
 from ...volume import Volume
 from . import marks
+from .head import draw_head
 
 _HEIGHT_IN = 4.1
 _HALF = 0.5  # of the drawing, for the head
@@ -29,7 +28,6 @@ _PLACES = ((30.0, 60.0), (45.0, 150.0), (30.0, 240.0), (45.0, 330.0))  # marked:
 _MAP_SHARE = 0.405  # of the drawing's width
 _TURNED = np.array([0.0, -0.45, -0.15])  # how far the viewer stands off the middle direction, LPS
 _TOWARDS_VIEWER = 0.12  # cosine from which a place of the head is on the side that is seen
-_PIXEL_MM = 0.45
 
 
 def plate_map(bone: Volume, radius_map: RadiusMap) -> Described:
@@ -115,28 +113,19 @@ def rim_angles(radius_map: RadiusMap) -> tuple[NDArray[np.float64], NDArray[np.f
 def _draw_head(figure: Figure, bone: Volume, radius_map: RadiusMap, radius: Array) -> None:
     """The skull with the lines of the map on it."""
     grid = radius_map.grid
-    towards = grid.axes[2] + _TURNED
-    axes = shading.view_axes(towards)
-    seen = shading.render([shading.Solid(skull_surface(bone), rgb_shares(SKULL))], towards, px_mm=_PIXEL_MM)
-    height, width = seen.rgb.shape[:2]
-    wide = max(width, height * _HALF * marks.WIDTH_IN / _HEIGHT_IN)
-    ax = marks.plane(figure, (0, 0, _HALF, 1), (0, 0), wide)
-    ax.imshow(seen.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="nearest", aspect="auto")
-    high = wide * _HEIGHT_IN / (_HALF * marks.WIDTH_IN)
-    ax.set(xlim=((width - wide) / 2, (width + wide) / 2), ylim=((height + high) / 2, (height - high) / 2))
+    head = draw_head(figure, (0, 0, _HALF, 1), bone, grid.axes[2] + _TURNED)
 
     def placed(polar: ArrayLike, around: ArrayLike) -> NDArray[np.float64]:
-        """Pixels of places; nan for those on the far side."""
+        """Where places are drawn; nan for those on the far side."""
         points = on_surface(grid, radius, polar, around)
-        at = np.array([seen.pixel_of(point, axes) for point in points])
-        at[(points - grid.centre) @ axes[2] < _TOWARDS_VIEWER * np.linalg.norm(points - grid.centre, axis=1)] = np.nan
-        return at
+        away = points - grid.centre
+        hidden = away @ head.axes[2] < _TOWARDS_VIEWER * np.linalg.norm(away, axis=1)
+        return np.where(hidden[:, None], np.nan, head.place(points))
 
-    ax.fill(*placed(*rim_angles(radius_map)).T, fc=faded(PATCH), ec=BLACK, lw=1.6)
+    head.ax.fill(*placed(*rim_angles(radius_map)).T, fc=faded(PATCH), ec=BLACK, lw=1.6)
     for line in _lines():
-        marks.polyline(ax, placed(*line), MEASURE, lw=1.1)
-    _number_places(ax, placed(*np.transpose(_PLACES)))
-    marks.sides(ax, axes[:2])
+        marks.polyline(head.ax, placed(*line), MEASURE, lw=1.1)
+    _number_places(head.ax, placed(*np.transpose(_PLACES)))
 
 
 def _draw_map(figure: Figure, radius_map: RadiusMap) -> None:

@@ -124,7 +124,7 @@ def _draw_cut(
     around = np.column_stack([np.cos(turns), np.sin(turns)])
     low, width = _limits(outer[:, None] * around)
     ax = marks.plane(figure, (0, 0, _CUT, 1), low, width)
-    _fill_masks(ax, *seen, right_up)
+    fill_cut(ax, seen[1].head_centre, right_up, {BONE: seen[0], PATCH: seen[1].sheet})
     for towards, radius in zip(around, outer, strict=True):
         if np.isnan(radius):
             marks.arrow(ax, _EYE_MM * towards, far * towards, BLACK, width=1.4)
@@ -165,12 +165,22 @@ def _limits(points: NDArray[np.float64]) -> tuple[NDArray[np.float64], float]:
     return (low + high) / 2 - np.array([1.0, aspect]) * width / 2, float(width)
 
 
-def _fill_masks(ax: Axes, bone: Volume, opening: Opening, right_up: NDArray[np.float64]) -> None:
-    """The bone of the cut, and the sheet across the opening."""
+def fill_cut(ax: Axes, origin: NDArray[np.float64], right_up: NDArray[np.float64], masks: dict[str, Volume]) -> None:
+    """Fill what a cut shows of masks, over all of a plane in mm.
+
+    Parameters
+    ----------
+    ax : Axes
+    origin : ndarray, shape (3,)
+        What lies at (0, 0), world mm.
+    right_up : ndarray, shape (2, 3)
+        Unit vectors to the right and up, world.
+    masks : dict of str to Volume
+        Bool masks by colour, the last on top.
+    """
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     cols, rows = np.arange(left, right, _PIXEL_MM), np.arange(-top, -bottom, _PIXEL_MM)
-    frame = np.stack([opening.head_centre, -right_up[1], right_up[0]])
-    for mask, colour in ((bone, BONE), (opening.sheet, PATCH)):
-        seen = slicing.sample_mask(mask, frame, rows, cols)
-        fill_mask(ax, seen, (left, right, bottom, top), colour)
+    frame = np.stack([origin, -right_up[1], right_up[0]])
+    for colour, mask in masks.items():
+        fill_mask(ax, slicing.sample_mask(mask, frame, rows, cols), (left, right, bottom, top), colour)
     ax.set(xlim=(left, right), ylim=(bottom, top), aspect="auto")
