@@ -84,25 +84,21 @@ class Steps:
     curves: Points
 
 
-def walk(ct: Volume, bone: Volume, opening: Opening) -> Steps:
-    """Take the slice in the middle of an opening through the stages.
+def walk(ct: Volume, bone: Volume, opening: Opening, plane: int) -> Steps:
+    """Take a slice through the stages.
 
     Parameters
     ----------
     ct, bone : Volume
         HU, and bool mask.
     opening : Opening
+    plane : int
+        In which both ends of its gap are seen.
 
     Returns
     -------
     Steps
-
-    Raises
-    ------
-    InputRefused
-        ``NoAxialGap`` where no slice shows both ends of the gap.
     """
-    plane = bridged_plane(bone, opening, **_FOLLOW)
     ends = gap_ends(bone, opening, plane, **_FOLLOW)
     inside = bone.to_voxel(opening.head_centre)[1:]
     outer, inner = (_balloon(one, inside) for one in ends)
@@ -135,8 +131,13 @@ def pipeline(ct: Volume, bone: Volume, opening: Opening, prosthesis: Prosthesis)
     Returns
     -------
     Described
+
+    Raises
+    ------
+    InputRefused
+        ``NoAxialGap`` where no slice shows both ends of the gap.
     """
-    steps = walk(ct, bone, opening)
+    steps = walk(ct, bone, opening, bridged_plane(bone, opening, **_FOLLOW))
     figure = marks.sheet(_HEIGHT_IN)
     tiles = [(left, bottom) for bottom in _BOTTOM for left in _LEFT]
     _draw_arrows(figure)
@@ -174,12 +175,18 @@ def _draw_arrows(figure: Figure) -> None:
     marks.arrow(ax, (first, middle), (first, low - 0.068), BLACK, width=2.6)
 
 
+def _window(low: Points, high: Points) -> tuple[Points, Points]:
+    """First and last (row, col) px of a picture around a box."""
+    aspect = _TILE[1] * _HEIGHT_IN / (_TILE[0] * marks.WIDTH_IN)
+    size = high - low
+    half = max(size[1], size[0] / aspect) / 2 * np.array([aspect, 1.0])
+    return (low + high) / 2 - half, (low + high) / 2 + half
+
+
 def _tile(figure: Figure, place: tuple[float, float], low: Points, high: Points) -> Axes:
     """A picture of the slice around a box (row, col) px, rows running down."""
-    middle, size = (low + high) / 2, high - low
-    aspect = _TILE[1] * _HEIGHT_IN / (_TILE[0] * marks.WIDTH_IN)
-    width = max(size[1], size[0] / aspect)
-    ax = marks.plane(figure, (*place, *_TILE), middle[::-1] - np.array([1.0, aspect]) * width / 2, width)
+    first, last = _window(low, high)
+    ax = marks.plane(figure, (*place, *_TILE), first[::-1], last[1] - first[1])
     ax.invert_yaxis()
     return ax
 
@@ -194,13 +201,13 @@ def _close(figure: Figure, place: tuple[float, float], steps: Steps) -> Axes:
     """A framed picture of the bone around the gap."""
     ax = _tile(figure, place, *_gap(steps))
     _show(ax, steps.bone, BONE)
-    _frame(ax, ax)
+    _frame(ax, steps)
     return ax
 
 
-def _frame(ax: Axes, of: Axes) -> None:
-    """A frame around what a picture shows, in itself or in another one."""
-    (left, right), (bottom, top) = of.get_xlim(), of.get_ylim()
+def _frame(ax: Axes, steps: Steps) -> None:
+    """A frame around what the pictures of the gap show."""
+    (top, left), (bottom, right) = _window(*_gap(steps))
     box = np.array([[left, top], [right, top], [right, bottom], [left, bottom], [left, top]])
     marks.polyline(ax, box, MEASURE, lw=1.2)
 
@@ -234,9 +241,7 @@ def _segmentation(figure: Figure, place: tuple[float, float], steps: Steps) -> N
     """The bone of the whole slice, and a frame around what the next pictures show."""
     ax = _tile(figure, place, *_whole(steps))
     _show(ax, steps.bone, BONE)
-    seen = _tile(figure, place, *_gap(steps))
-    _frame(ax, seen)
-    seen.remove()
+    _frame(ax, steps)
     marks.sides(ax, _SLICE_SIDES)
 
 
