@@ -29,9 +29,14 @@ def drawn_by():
     return module.drawn_by()
 
 
+def stored(name):
+    """A stored drawing."""
+    return Image.open(io.BytesIO((IMG / name).read_bytes()))
+
+
 def facts(name):
     """What a stored drawing says of itself."""
-    info = Image.open(IMG / name).info
+    info = stored(name).info
     return json.loads(info["comment"] if name.endswith(".gif") else info["Description"])
 
 
@@ -53,14 +58,13 @@ def test_the_pipeline_shows_what_lesson_00_computes():
 
 
 def test_the_legend_is_pixel_for_pixel_what_is_drawn_today():
-    wanted, stored = (
-        np.asarray(Image.open(f).convert("RGB"), float) for f in (io.BytesIO(diagrams.legend().png), IMG / "legend.png")
-    )
-    assert wanted.shape == stored.shape and np.abs(wanted - stored).mean() < 2.0, AGAIN  # another font draws otherwise
+    pictures = Image.open(io.BytesIO(diagrams.legend().png)), stored("legend.png")
+    wanted, kept = (np.asarray(picture.convert("RGB"), float) for picture in pictures)
+    assert wanted.shape == kept.shape and np.abs(wanted - kept).mean() < 2.0, AGAIN  # another font draws otherwise
 
 
 class TestFilm:
-    film = Image.open(IMG / "balloon.gif")
+    film = stored("balloon.gif")
 
     def test_it_is_small_loops_and_holds_all_its_steps(self):
         told = facts("balloon.gif")
