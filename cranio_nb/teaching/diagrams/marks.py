@@ -116,8 +116,8 @@ def plane(figure: Figure, box: tuple[float, float, float, float], low: ArrayLike
     Examples
     --------
     >>> ax = plane(sheet(2.0), (0, 0, 1, 1), (0, 0), 80.0)
-    >>> ax.get_xlim(), ax.get_ylim()
-    ((0.0, 80.0), (0.0, 20.0))
+    >>> [float(limit) for limit in (*ax.get_xlim(), *ax.get_ylim())]
+    [0.0, 80.0, 0.0, 20.0]
     """
     ax = figure.add_axes(box)
     ax.set_axis_off()
