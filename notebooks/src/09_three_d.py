@@ -66,7 +66,8 @@ diagrams.plate_map(bone, vault)
 
 # %% [markdown]
 # The same rings, spokes and numbers on the head and on its map. Rings are bent on the head and circles on the map,
-# and it is on the map that the plate is bent across the hole (light blue). Both of its radii can be drawn so:
+# and it is on the map that the plate is bent across the hole (light blue). The same map again, and that of the
+# thickness:
 
 # %% tags=["nbval-check-output"]
 fig, panels = pictures.axes(2, height=3.8)
