@@ -82,8 +82,8 @@ def snaxel_forces(length: float, theta0: float, theta1: float, *, pressure: floa
     acting = [forces(curve, slopes, pressure) for curve in states]
     figure = marks.sheet(_HEIGHT_IN)
     unit = _PUSH * length / abs(pressure)  # one scale for all arrows
-    ways = ("inwards: the curve sinks", "outwards: the curve rises")
-    way = ways[int(acting[0].sum(axis=0)[(n - 2) // 2] @ normals(start)[n // 2] > 0)]
+    rises = acting[0].sum(axis=0)[(n - 2) // 2] @ normals(start)[n // 2] > 0
+    way = "outwards: the curve rises" if rises else "inwards: the curve sinks"
     names = f"Step 0: the sum points {way}", f"Step {int(made.n_iter)}, at rest: in and out are equally long"
     for i, (name, curve, some) in enumerate(zip(names, states, acting, strict=True)):
         low = np.array([-_MARGIN, -_BELOW[i]]) * length
@@ -93,9 +93,11 @@ def snaxel_forces(length: float, theta0: float, theta1: float, *, pressure: floa
         _name_forces(ax, curve, some, unit, ("pressure", "tension") if i == 0 else ("rigidity",))
     sums = [np.linalg.norm(some.sum(axis=0), axis=1).max() for some in acting]
     line = f"k = {pressure:g}; largest sum of forces: {sums[0]:.3f} px at the start, {sums[1]:.4f} px at rest"
+    sides = "pressure outwards", "tension inwards"
+    longer, shorter = sides if rises else sides[::-1]
     alt = (
-        "Twice the same balloon with an arrow for each force on each snaxel. At the start tension inwards is longer "
-        "than pressure outwards; at rest they are equally long, and rigidity acts beside the two ends only."
+        "Twice the same balloon with an arrow for each force on each snaxel. At the start "
+        f"{longer} is longer than {shorter}; at rest they are equally long, and rigidity acts beside the two ends only."
     )
     return marks.finished(figure, alt, line)
 

@@ -49,8 +49,8 @@ def test_at_rest_the_arrows_reach_equally_far_to_both_sides():
     assert reach.max(axis=0) == pytest.approx(-reach.min(axis=0), rel=0.02)
 
 
-@pytest.mark.parametrize(("k", "way"), [(0.02, "inwards"), (0.3, "outwards")])
-def test_the_line_gives_both_sums(k, way):
-    line = snaxel_forces(LENGTH, THETA, np.pi - THETA, pressure=k).line
+@pytest.mark.parametrize(("k", "longer"), [(0.02, "tension"), (0.3, "pressure")])
+def test_line_and_description_tell_what_is_seen(k, longer):
+    drawn = snaxel_forces(LENGTH, THETA, np.pi - THETA, pressure=k)
     begin = np.linalg.norm(forces(START, SLOPES, k).sum(axis=0), axis=1).max()
-    assert f"{begin:.3f} px at the start" in line and ("at rest" in line), way
+    assert f"{begin:.3f} px at the start" in drawn.line and f"At the start {longer}" in drawn.alt
