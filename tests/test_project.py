@@ -168,10 +168,12 @@ class TestReadme:
     def test_says_early_that_it_is_not_for_clinical_use(self):
         assert "**Not for clinical use.**" in README[:800]
 
-    def test_picture_is_there_light_and_described(self):
-        ((alt, path),) = re.findall(r"!\[(.*?)\]\((.*?)\)", README, re.S)
-        picture = (ROOT / path).read_bytes()
-        assert picture.startswith(b"\x89PNG") and len(picture) < 300_000 and len(alt.split()) > 20
+    def test_pictures_are_there_light_and_described(self):
+        pictures = re.findall(r"!\[(.*?)\]\((.*?)\)", README, re.S)
+        assert len(pictures) == 3
+        for alt, path in pictures:
+            picture = (ROOT / path).read_bytes()
+            assert picture.startswith((b"\x89PNG", b"GIF89a")) and len(picture) < 300_000 and len(alt.split()) > 20
 
     def test_links_lead_somewhere(self):
         headings = {heading.lower().replace(" ", "-") for heading in re.findall(r"^## (.*)", README, re.M)}

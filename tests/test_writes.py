@@ -35,6 +35,8 @@ REASONS = {
     ("teaching/classroom.py", "copytree"): "into that folder",
     ("drawing/described.py", "save"): "into memory",
     ("drawing/figures/axes.py", "savefig"): "into memory",
+    ("teaching/diagrams/marks.py", "save"): "into memory",
+    ("teaching/diagrams/film.py", "save"): "into memory",
     ("prior/file.py", "savez_compressed"): "into memory",
     ("teaching/widgets/tuning.py", "save"): "of the panel: guarded and staged",
     ("teaching/site/frames.py", "save"): "into memory",

@@ -1,6 +1,7 @@
-"""The colours of all pictures, by name and by meaning, and the letters of the patient's sides.
+"""The colours of all pictures, by name and by meaning, the sizes of their writing, the letters of the patient's sides.
 
-The bright ones are those of Okabe and Ito 2008, told apart by the colour-blind.
+The bright ones are those of Okabe and Ito 2008, told apart by the colour-blind. A colour has one meaning, and what it
+means is told by a word, a line style or a shape as well. An arrow for a force has the colour of what exerts it.
 """
 
 from __future__ import annotations
@@ -17,12 +18,22 @@ BONE = "#D8D2C4"
 SKULL = "#EDE7D8"
 """Bone of a shaded surface."""
 PATCH = SKY
-TRUTH = PURPLE
+TRUTH, TRUTH_WORD = PURPLE, "#8F3A6D"
+"""What is known to be missing, and the darker tone in which words for it are written."""
 PROSTHESIS = OUTER = BLUE
 INNER = VERMILLION
 TANGENT = GREEN
+"""The way the bone was going at an end of the gap."""
+START = ORANGE
+"""The curve that a balloon starts from; dashed."""
+MEASURE = GREY
+"""What is measured or only helps to see: chord, angles, lengths, frames."""
+PRESSURE = BLACK
 NO_VALUE = "#C9C9C9"
 """A surface beside one that is coloured by numbers."""
+
+TITLE_PT, LABEL_PT, NOTE_PT = 12.0, 10.5, 9.0
+"""Sizes of writing in a drawing 8 inches wide: names of its parts, what is written beside things, numbers at axes."""
 
 _LETTERS = (("R", "L"), ("A", "P"), ("I", "S"))  # negative and positive end of x, y, z in LPS
 _WORDS = (("right", "left"), ("front", "back"), ("base", "top"))

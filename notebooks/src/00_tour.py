@@ -39,7 +39,7 @@
 import numpy as np
 
 import cranio_nb as cn
-from cranio_nb.teaching import check, classroom, widgets
+from cranio_nb.teaching import check, classroom, diagrams, widgets
 
 # %% [markdown]
 # ## 1. The scan
@@ -89,7 +89,14 @@ openings = cn.find_openings(bone)
 first, end = openings[0].planes
 print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 
+# %% tags=["nbval-check-output"]
+diagrams.ray_fan(bone, openings[0])
+
 # %% [markdown]
+# Grey rays end at the bone, black ones leave: side by side they make one opening, and the light blue sheet is what the
+# package keeps of it. The other rays measure the skull, one outer and one inner radius for each direction (at the
+# right). Lesson 09 works on these radii alone.
+#
 # ## 4. One slice: ends, tangents, balloon (stages 2 and 3)
 #
 # In one slice the hole is a gap in a ring. At each end of the gap we take the direction in which the bone was going,
@@ -170,8 +177,15 @@ cn.show(bone, prosthesis)
 # *In a live notebook and on the site this head turns with the mouse.* Its top is flat because the slices are 2.5 mm
 # apart (section 1): the highest slice with bone is a disc, and there is nothing between it and the next.
 #
-# That is the whole way: a scan went in, a solid came out. The rest of the course asks at each step: *why does this
-# work, when does it fail, and how do we know?*
+# That is the whole way: a scan went in, a solid came out. Here it is in one picture, drawn from what this notebook made.
+# Each stage has the name of its module in `cranio_nb.stages`; the frame in the second picture is what the next three
+# show from near by.
+
+# %% tags=["nbval-check-output"]
+diagrams.pipeline(ct, bone, openings[0], prosthesis)
+
+# %% [markdown]
+# The rest of the course asks at each step: *why does this work, when does it fail, and how do we know?*
 #
 # ## A mistake to make once
 #

@@ -23,11 +23,11 @@
 
 # %%
 import numpy as np
-from scipy import ndimage, spatial
+from scipy import ndimage
 
 import cranio_nb as cn
 from cranio_nb.stages import feature_extraction
-from cranio_nb.teaching import check, classroom, pictures, widgets
+from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 
 # %% [markdown]
 # ## Parameters
@@ -66,19 +66,7 @@ for whose, mm in (("our", px), ("512", across / 512)):
 
 # %% tags=["nbval-check-output"]
 seen = feature_extraction.extract_features(mask)
-fig, (left, right) = pictures.axes(2, height=4.4)
-pictures.show_mask(left, mask, px=px, title="bone, spine, hull")
-spine = seen.skeleton[0]
-corners = spine[spatial.ConvexHull(spine).vertices]
-pictures.show_curve(left, spine, px=px, line=0, label="spine")
-pictures.show_curve(left, [*corners, corners[0]], px=px, line=1, label="hull S")
-left.legend(loc="center")
-pictures.show_points(right, seen.outer, px=px, colour="#0072B2", label="outer: B - S")
-pictures.show_points(right, seen.inner, px=px, colour="#D55E00", label="inner: B ∩ S")
-right.set(xlim=left.get_xlim(), ylim=left.get_ylim(), aspect="equal", xlabel="mm")
-right.legend(loc="center")
-alt = "Left: an open ring of bone, its middle line and hull. Right: its two boundaries."
-pictures.picture(fig, alt, f"boundary: {len(seen.outer)} px outer, {len(seen.inner)} px inner")
+diagrams.boundary_sets(seen, mask, px=px)
 
 # %% [markdown]
 # <details>

@@ -30,7 +30,7 @@ import numpy as np
 import cranio_nb as cn
 from cranio_nb.curves import ChordFrame, cubic, spiral
 from cranio_nb.stages import deformable_model, feature_extraction
-from cranio_nb.teaching import check, classroom, pictures, widgets
+from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 
 # %% [markdown]
 # ## Parameters
@@ -79,7 +79,19 @@ print(
     f"start curve: height {start[:, 1].max():.1f} px, ends {start[[0, -1]].round(1).tolist()}"
 )
 
+# %% tags=["nbval-check-output"]
+truth, expect = next(iter(case.true_curves(plane)), None), None  # None for a scan of your own
+if truth is not None:
+    wider = frame.length / np.linalg.norm(truth[-1] - truth[0])  # as in lesson 03, section 4
+    lean = np.degrees(np.arcsin(wider * np.sin(np.radians(case.true_angles(plane)[0]))))
+    expect = lean[0], 180 - lean[1]
+drawn = diagrams.Gap(outer, inside, bone.voxels[plane], case.px, truth)
+diagrams.chord_frame(drawn, expected_deg=expect)
+
 # %% [markdown]
+# This is our slice in its chord frame: the letters tell how it is turned. Both angles count from the direction of
+# `along`, so theta1 goes over the top to the arrow at the far end.
+#
 # ## 2. The forces
 #
 # Equation (1), with no image force, is
@@ -97,6 +109,18 @@ print(
 #
 # Every $\Delta s$ cancels, for the fourth derivative as well. What is left are second and fourth differences **per
 # index**, with weights 1. Keep this in mind; it is the key to section 4.
+#
+# Each snaxel then feels three forces. Here they are for the paper's `k` in a gap of 90 px whose ends rise at 13.8 degrees
+# (a gap in a circle, see section 3). A force has the colour of what exerts it: blue the curve, black the wind.
+
+# %% tags=["nbval-check-output"]
+theta = np.radians(13.8)
+diagrams.snaxel_forces(90.0, theta, np.pi - theta, pressure=0.062)
+
+# %% [markdown]
+# At the start tension is the stronger one all along, and rigidity has nothing to do: a cubic has no fourth difference.
+# At rest wind and tension balance in the middle. Rigidity is felt at the first snaxels beside each end only, where the
+# clamp bends the curve.
 #
 # In each step we solve one linear system (Cohen's semi-implicit scheme):
 #
@@ -122,7 +146,6 @@ print(
 # `panel.set(n=41, dt=4, step=300)` and the like in a new cell.)
 
 # %% tags=["nbval-check-output"]
-truth = next(iter(case.true_curves(plane)), None)  # None for a scan of your own
 panel = widgets.balloon(outer, inside, background=bone.voxels[plane], truth=truth, px=case.px)
 panel
 
@@ -183,7 +206,14 @@ for k in (-0.062, 0.062, 0.4):
 # $$\boxed{\text{apex} = \frac{|k|\,N^2}{8}\ \text{pixels}}$$
 #
 # The length of the gap is nowhere in it. For the paper's k = 0.062 and N = 20 this is 3.1 px, whatever the gap, but
-# for what the clamped ends add. Let us see. We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of
+# for what the clamped ends add. In the gap of our head it is about half the height of the
+# missing bone:
+
+# %% tags=["nbval-check-output"]
+diagrams.chord_at_rest(drawn, deformable_model.PAPER_PRESSURE)
+
+# %% [markdown]
+# And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of
 # 0.45 mm) and cut gaps into them.
 
 # %% tags=["nbval-check-output"]

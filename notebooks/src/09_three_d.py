@@ -28,7 +28,7 @@ import numpy as np
 
 import cranio_nb as cn
 from cranio_nb.evaluation import against_truth, paper_tables
-from cranio_nb.teaching import check, classroom, pictures, widgets
+from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 from cranio_nb.vault import radius_measurement
 
 # %% [markdown]
@@ -62,6 +62,14 @@ true = against_truth.true_prosthesis(case.truth, bone, openings[0].head_centre)
 
 # %% tags=["nbval-check-output"]
 vault = radius_measurement.measure_around(bone, openings[0])
+diagrams.plate_map(bone, vault)
+
+# %% [markdown]
+# The same rings, spokes and numbers on the head and on its map. Rings are bent on the head and circles on the map,
+# and it is on the map that the plate is bent across the hole (light blue). The same map again, and that of the
+# thickness:
+
+# %% tags=["nbval-check-output"]
 fig, panels = pictures.axes(2, height=3.8)
 half = (len(vault.outer) // 2 + 0.5) * vault.step_mm
 maps = {"outer radius (mm)": vault.outer, "thickness (mm)": vault.outer - vault.inner}

@@ -83,13 +83,35 @@ def record_inflation(
 
     scheme = {"tension": tension, "rigidity": rigidity, "dt": dt, "tol": tol}
     result = stage.inflate(start, slopes, pressure=push, max_iter=MAX_STEPS, iter_callback=keep, **scheme)
-    # elastic energy of each curve, by differences per index
     stack = np.array(curves)
-    energy = (
-        tension * (np.diff(stack, axis=1) ** 2).sum(axis=(1, 2))
-        + rigidity * (np.diff(stack, 2, axis=1) ** 2).sum(axis=(1, 2))
-    ) / 2
+    energy = elastic_energy(stack, tension, rigidity)
     return Inflation(stack, np.array(change), energy, np.broadcast_to(push, (n,)), bool(result.converged))
+
+
+def elastic_energy(curves: Points, tension: float = 1.0, rigidity: float = 1.0) -> NDArray[np.float64]:
+    """What curves hold by being stretched and bent, by differences per index.
+
+    Parameters
+    ----------
+    curves : ndarray, shape (T, n, 2)
+        Chord px.
+    tension, rigidity : float
+        w1 and w2.
+
+    Returns
+    -------
+    ndarray, shape (T,)
+        px^2.
+
+    Examples
+    --------
+    A straight chord of length L holds L^2 / 2 N:
+
+    >>> elastic_energy(np.stack([np.linspace(0, 60, 21), np.zeros(21)], axis=1)[None]).round(9).tolist()
+    [90.0]
+    """
+    stretched, bent = ((np.diff(curves, order, axis=1) ** 2).sum(axis=(1, 2)) for order in (1, 2))
+    return np.asarray((tension * stretched + rigidity * bent) / 2)
 
 
 def _initial(
