@@ -126,6 +126,26 @@ def check_mesh(mesh: Mesh) -> MeshReport:
     )
 
 
+def is_closed(mesh: Mesh) -> bool:
+    """Whether every edge joins two faces that are wound alike.
+
+    Parameters
+    ----------
+    mesh : Mesh
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> tetrahedron = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> is_closed(Mesh(np.eye(4, 3), tetrahedron)), is_closed(Mesh(np.eye(4, 3), tetrahedron[1:]))
+    (True, False)
+    """
+    return bool((_edges(mesh)[1] == 2).all()) and _flipped_edges(mesh) == 0
+
+
 def wall_thickness(mesh: Mesh) -> NDArray[np.float64]:
     """Wall thickness seen from evenly picked faces of a closed mesh.
 

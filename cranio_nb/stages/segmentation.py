@@ -28,8 +28,6 @@ _BAR_MM = 24.0  # width of the bars and plates that are taken off the head; the 
 _MARGIN_MM = 3.0  # beyond the skin, which the coarse voxels miss by as much
 _LEAST_SOFT = 0.5  # of what lies within the skin; a dry skull is full of air
 _LEAST_BONE = 0.2  # of all bone that lies within the skin, else what was found is not a head
-_SAME_SLICE = np.zeros((3, 3, 3), bool)  # neighbours share an edge within their slice
-_SAME_SLICE[1] = ndimage.generate_binary_structure(2, 1)
 
 
 def segment(
@@ -304,11 +302,16 @@ def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.boo
     >>> fill_holes(mask, max_hole_px=4)[0, 2].astype(int)
     array([1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1])
     """
-    labels, n_holes = ndimage.label(~mask, _SAME_SLICE)
-    small = np.bincount(labels.ravel(), minlength=n_holes + 1) <= max_hole_px
+    return np.stack([plane | _small_holes(~plane, max_hole_px) for plane in mask])
+
+
+def _small_holes(free: NDArray[np.bool_], max_px: float) -> NDArray[np.bool_]:
+    """The enclosed pieces of what is free in a slice, up to a size; slice by slice, as labels take four bytes each."""
+    labels, n_pieces = ndimage.label(free)
+    small = np.bincount(labels.ravel(), minlength=n_pieces + 1) <= max_px
     small[0] = False  # the bone itself
-    small[_border_labels(labels)] = False
-    return mask | small[labels]
+    small[_border_labels(labels[None])] = False
+    return small[labels]
 
 
 def _border_labels(labels: NDArray) -> NDArray:
