@@ -55,7 +55,7 @@ def write_nifti(volume: Volume, path: str | Path, order: AxisOrder | None = None
         raise CannotWrite("BadFormat", f"{path.name} has no NIfTI suffix; use .nii or .nii.gz.")
     # stored as the input was, axis by axis, in RAS as the format asks
     stored = volume if order is None else volume.reorder(order.inverse)
-    voxels = stored.voxels.astype(np.uint8) if stored.voxels.dtype == bool else stored.voxels
+    voxels = stored.voxels.view(np.uint8) if stored.voxels.dtype == bool else stored.voxels
     if voxels.dtype.name not in _TYPES:
         raise CannotWrite("BadFormat", f"Voxels of {voxels.dtype} cannot be stored; use {', '.join(_TYPES)}.")
     affine = _LPS_TO_RAS @ stored.affine
