@@ -178,8 +178,7 @@ def test_an_stl_file_that_reads_back_otherwise_is_not_kept(tmp_path, monkeypatch
 
 
 def test_what_is_a_solid_only_in_memory_is_not_kept(tmp_path):
-    # two cubes side by side along an edge, each with its own vertices: in STL, which knows places alone, four faces meet
-    # there
+    # two cubes side by side along an edge, each with its own vertices: by places alone four faces meet there
     trimesh = pytest.importorskip("trimesh")
     cube = trimesh.creation.box()
     one, other = (Mesh(cube.vertices + move, np.asarray(cube.faces, np.intp)) for move in ((0, 0, 0), (1, 1, 0)))
