@@ -91,10 +91,14 @@ def entry(spent: Spent) -> dict[str, Any]:
 
 
 def growth(folder: Path, out: Path) -> list[dict[str, object]]:
-    """Every point of the growth curves, three times."""
+    """Every point of the growth curves, three times; what no design comes out of is said and left out."""
     found = []
     for point in points(folder):
-        runs = [run_whole(design(point.arguments(folder), out)) for _ in range(_GROWTH_ROUNDS)]
+        try:
+            runs = [run_whole(design(point.arguments(folder), out)) for _ in range(_GROWTH_ROUNDS)]
+        except SystemExit as refusal:
+            print(f"{point.what} {point.n:g} {point.method} left out: {refusal}", file=sys.stderr, flush=True)
+            continue
         found.append(record(point, [run.wall_s for run in runs], [run.peak_mb for run in runs]))
         print(f"{point.what} {point.n:g} {point.method}", file=sys.stderr, flush=True)
     return found

@@ -1,6 +1,6 @@
 """Inputs of `speed.py`: a real series with a hole cut into it, and the same head on other grids.
 
-Everything is written below one folder and made once. Without real data the head is the phantom `data_synth` makes.
+Everything is written below one folder and made once. Without real data the head is one that `data_synth` makes.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import Volume
-from data_synth import cut_case, phantom_case
+from data_synth import cut_case, face_case, phantom_case
 from data_synth.series import write_dicom
 
 HOLE = ("parietal", 1)
@@ -65,9 +65,9 @@ def head() -> tuple[Head, str]:
     if home := os.environ.get("CRANIO_NB_DATA"):
         scan = read_ct(Path(home) / _SERIES)[0]
         return Head(scan.voxels.astype(np.int16), scan.affine), "dry skull (Philips, 1 mm slices)"
-    case = phantom_case("full", "intact", 1)
+    case = face_case("full", 1, holes=0)
     assert case.hu is not None
-    return Head(case.hu, case.affine), "phantom, size full"
+    return Head(case.hu, case.affine), "synthetic head, size full"
 
 
 def series(folder: Path) -> tuple[Path, str, tuple[int, ...]]:
