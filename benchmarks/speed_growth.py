@@ -13,7 +13,7 @@ from speed_cases import Head, head
 SLICES = (34, 70, 140, 280, 560)
 IN_PLANE = (256, 512, 1024)
 WIDTHS_MM = (30, 50, 70, 90, 110)
-SNAXELS = (21, 41, 81, 161, 321)
+SNAXELS = (21, 41, 81, 141, 201)
 METHODS = ("slicewise", "thin-plate")
 
 

@@ -22,6 +22,7 @@ from speed_table import RATIOS, curves, lines  # noqa: E402
 STORE, PAGE, PICTURE = DOCS / "performance.json", DOCS / "performance.md", DOCS / "img" / "performance.png"
 _COLOURS = {"slicewise": "#0072B2", "thin-plate": "#D55E00"}
 _AXES = {"slices": "slices", "in-plane": "rows and columns", "width": "gap, mm", "snaxels": "snaxels"}
+_TICKS = (1, 2, 5, 10, 20, 50)
 _TOP = """# How long it takes
 
 How long `cranio-nb design` takes beside the time in which SimpleITK reads the same series, takes a threshold, keeps the
@@ -57,7 +58,7 @@ def picture(found: Mapping[str, Any]) -> Figure:
     upper, *lower = figure.subfigures(1 + bool(kinds), 1)
     _draw_ratios(upper.subplots(), found["rows"])
     if kinds:
-        axes = lower[0].subplots(1, len(kinds), squeeze=False)[0]
+        axes = lower[0].subplots(1, len(kinds), squeeze=False, sharey=True)[0]
         for ax, what in zip(axes, kinds, strict=True):
             _draw_growth(ax, what, {method: values for (kind, method), values in grown.items() if kind == what})
         axes[0].set_ylabel("seconds (dashed: 100 MB)")
@@ -67,12 +68,12 @@ def picture(found: Mapping[str, Any]) -> Figure:
 def _draw_ratios(ax: Any, rows: Mapping[str, Any]) -> None:
     """A bar for each ratio, a tick where it is wanted."""
     shown = [row for row in RATIOS if row[1] in rows and row[2] in rows]
-    for y, (name, this, that, most) in enumerate(reversed(shown)):
+    for y, (_, this, that, most) in enumerate(reversed(shown)):
         middle, low, high = ratios(column(rows[this], "wall_s"), column(rows[that], "wall_s"))
         ax.barh(y, middle, color="#56B4E9", xerr=[[middle - low], [high - middle]], ecolor="#333333")
         ax.plot([most, most], [y - 0.4, y + 0.4], color="#D55E00", linewidth=2)
-        ax.text(0, y, f" {name} / {that}".replace("`", ""), va="center", fontsize=8)
-    ax.set_yticks([])
+    names = [f"{name} / {that}".replace("`", "") for name, _, that, _ in reversed(shown)]
+    ax.set_yticks(range(len(shown)), names)
     ax.set_xlabel("times as long (orange: wanted at most)")
 
 
@@ -83,6 +84,7 @@ def _draw_growth(ax: Any, what: str, by_method: Mapping[str, list[tuple[float, f
         ax.loglog(n, t, "o-", color=_COLOURS[method], label=method, markersize=4)
         ax.loglog(n, [one / 100 for one in mb], "--", color=_COLOURS[method], linewidth=1)
     ax.set_xticks(n, [f"{one:g}" for one in n])
+    ax.set_yticks(_TICKS, [f"{one:g}" for one in _TICKS])
     ax.minorticks_off()
     ax.set_xlabel(_AXES[what])
     ax.legend(fontsize=7)
