@@ -9,6 +9,7 @@ import json
 import sys
 from collections.abc import Mapping
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 from matplotlib.figure import Figure
@@ -28,13 +29,12 @@ _TOP = """# How long it takes
 How long `cranio-nb design` takes beside the time in which SimpleITK reads the same series, takes a threshold, keeps the
 largest component and fills its holes. Everything is a whole process, started anew each time; the rows ran in turn, so
 that what slows the machine for a while slows all of them, and ratios are taken round by round. Medians and ranges of
-{rounds} rounds. Peak memory is that of the largest process.
+{rounds} rounds; the load of the machine stands below. Peak memory is that of the largest process.
 
 `python benchmarks/speed.py --rounds 7 --growth --store docs/performance.json` measures, on your own machine too;
 `python docs/make_performance.py` makes this page of it.
 
-Series: {name}. Machine: {processor}, {cores} cores, {memory_gb} GB, {system}; load before the first round {load}.
-Date: {date}. Versions: {versions}.
+{marked}
 
 ![How many times as long as SimpleITK each process takes, and how time and memory grow with slices, pixels, width of
 the gap and snaxels.](img/performance.png)
@@ -44,10 +44,18 @@ the gap and snaxels.](img/performance.png)
 
 def page(found: Mapping[str, Any]) -> str:
     """The page as text."""
+    top = _TOP.format(rounds=found["rounds"], marked=fill(_marked(found), 120))
+    return top + "\n".join(lines(found)).rstrip() + "\n"
+
+
+def _marked(found: Mapping[str, Any]) -> str:
+    """What was measured, on what machine, when, with which versions."""
     machine = found["machine"]
     versions = ", ".join(f"{name} {number}" for name, number in machine["versions"].items())
-    top = _TOP.format(**machine | {"versions": versions}, rounds=found["rounds"], name=found["series"]["name"])
-    return top + "\n".join(lines(found)).rstrip() + "\n"
+    place = "Machine: {processor}, {cores} cores, {memory_gb} GB, {system}; load before the first round {load}."
+    return (
+        f"Series: {found['series']['name']}. {place.format(**machine)} Date: {machine['date']}. Versions: {versions}."
+    )
 
 
 def picture(found: Mapping[str, Any]) -> Figure:
@@ -55,7 +63,7 @@ def picture(found: Mapping[str, Any]) -> Figure:
     grown = curves(found.get("growth", ()))
     kinds = list(dict.fromkeys(what for what, _ in grown))
     figure = Figure(figsize=(11, 3.2 + 2.6 * bool(kinds)), layout="constrained")
-    upper, *lower = figure.subfigures(1 + bool(kinds), 1)
+    upper, *lower = figure.subfigures(1 + bool(kinds), 1, squeeze=False)[:, 0]
     _draw_ratios(upper.subplots(), found["rows"])
     if kinds:
         axes = lower[0].subplots(1, len(kinds), squeeze=False, sharey=True)[0]
