@@ -6,7 +6,7 @@ Frames: any array index, fractions allowed; world (x, y, z) in mm, DICOM LPS.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import product
+from itertools import chain, product
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -145,7 +145,10 @@ def touched(index: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.bool_]:
     array([False,  True,  True,  True, False])
     """
     marked = np.zeros(shape, bool)
-    for one in product(*zip(*_nearest(index), strict=True)):
+    low, high = _nearest(index)
+    border = (low != high).any(axis=0)
+    ends = product(*zip(low[:, border], high[:, border], strict=True))
+    for one in chain([tuple(low)], ends):
         inside = np.logical_and.reduce([(i >= 0) & (i < n) for i, n in zip(one, shape, strict=True)])
         marked[tuple(i[inside] for i in one)] = True
     return marked

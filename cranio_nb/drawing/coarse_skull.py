@@ -6,6 +6,7 @@ Frame: world mm (LPS).
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy import ndimage
 from skimage.measure import marching_cubes
 
@@ -68,16 +69,27 @@ def _field(part: Volume) -> Volume:
     """Smooth field on voxels of about 1.3 mm, positive in bone: slice outlines are joined by signed distances."""
     # share of bone in blocks of whole voxels, as near to the coarse size as these allow
     block = np.maximum(1, np.rint(_COARSE_MM / part.spacing)).astype(int)
-    padded = np.pad(part.voxels, [(0, int(-n % b)) for n, b in zip(part.shape, block, strict=True)])
-    p, r, c = (n // b for n, b in zip(padded.shape, block, strict=True))
-    share = padded.reshape(p, block[0], r, block[1], c, block[2]).mean(axis=(1, 3, 5), dtype=np.float32)
+    share = _bone_in_blocks(part.voxels, block) / np.float32(block.prod())
     affine = move_affine(part.affine, (block - 1) / 2, block)  # coarse voxels in the middle of their blocks
     # planes farther apart than that: distances to their outlines, drawn out linearly between them
     split = max(1, round(float(part.spacing[0] * block[0]) / _COARSE_MM))
     field = share - np.float32(_BONE_SHARE)
     if split > 1:
         distances = plane_distances(share > _BONE_SHARE, _FAR_PX).astype(np.float32)
-        field = ndimage.zoom(distances, (((p - 1) * split + 1) / p, 1, 1), order=1)
+        n_planes = len(distances)
+        field = ndimage.zoom(distances, (((n_planes - 1) * split + 1) / n_planes, 1, 1), order=1)
         affine = move_affine(affine, (0, 0, 0), (1 / split, 1, 1))
     sigma = (0.7, 0.7, 0.7) if split == 1 else (0.8 * split, 1.3, 1.3)
     return Volume(ndimage.gaussian_filter(field, sigma), affine)
+
+
+def _bone_in_blocks(mask: NDArray[np.bool_], block: NDArray[np.intp]) -> NDArray[np.uint16]:
+    """Number of bone voxels in each block; there is none beyond the mask."""
+    count = mask.astype(np.uint16)
+    for axis, n in enumerate(block):
+        # the first of every n layers, and the others added to them
+        first, *others = (count[(slice(None),) * axis + (slice(k, None, n),)] for k in range(n))
+        count = first.copy()
+        for other in others:
+            count[(slice(None),) * axis + (slice(other.shape[axis]),)] += other
+    return count

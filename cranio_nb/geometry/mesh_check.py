@@ -5,6 +5,7 @@ Frame: world mm.
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -112,6 +113,10 @@ def check_mesh(mesh: Mesh) -> MeshReport:
     first, n_faces_at = _edges(mesh)
     fans, used = _fans(mesh, first)
     closed = len(mesh.faces) > 0 and bool((n_faces_at == 2).all())
+    # the search for the other side of the wall, in compiled code, leaves the processor to the rest
+    with ThreadPoolExecutor(1) as beside:
+        wall = beside.submit(_wall_p1, mesh) if finite and closed else None
+        n_crossings = len(crossings(mesh)) if finite else 0
     return MeshReport(
         n_vertices=len(mesh.vertices),
         n_faces=len(mesh.faces),
@@ -121,9 +126,34 @@ def check_mesh(mesh: Mesh) -> MeshReport:
         n_pinches=fans - used,
         n_parts=_parts(mesh, first),
         volume=mesh.volume if finite else float("nan"),
-        n_crossings=len(crossings(mesh)) if finite else 0,
-        wall_p1=float(np.percentile(wall_thickness(mesh), 1)) if finite and closed else float("nan"),
+        n_crossings=n_crossings,
+        wall_p1=float("nan") if wall is None else wall.result(),
     )
+
+
+def is_closed(mesh: Mesh) -> bool:
+    """Whether every edge joins two faces that are wound alike.
+
+    Parameters
+    ----------
+    mesh : Mesh
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> tetrahedron = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    >>> is_closed(Mesh(np.eye(4, 3), tetrahedron)), is_closed(Mesh(np.eye(4, 3), tetrahedron[1:]))
+    (True, False)
+    """
+    return bool((_edges(mesh)[1] == 2).all()) and _flipped_edges(mesh) == 0
+
+
+def _wall_p1(mesh: Mesh) -> float:
+    """Wall thickness that a hundredth of the surface falls short of, mm."""
+    return float(np.percentile(wall_thickness(mesh), 1))
 
 
 def wall_thickness(mesh: Mesh) -> NDArray[np.float64]:
@@ -179,8 +209,8 @@ def _edges(mesh: Mesh) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 def _flipped_edges(mesh: Mesh) -> int:
     """Directed edges that more than one face runs along."""
-    keys = _edge_keys(_directed_edges(mesh), len(mesh.vertices))
-    return len(keys) - len(np.unique(keys))
+    keys = np.sort(_edge_keys(_directed_edges(mesh), len(mesh.vertices)))  # numpy.unique takes twenty times as long
+    return int(np.count_nonzero(keys[1:] == keys[:-1]))
 
 
 def _fans(mesh: Mesh, first: NDArray[np.intp]) -> tuple[int, int]:

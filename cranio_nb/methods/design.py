@@ -14,6 +14,7 @@ import numpy as np
 
 from ..errors import InputRefused, NoOpening
 from ..geometry import face_sides
+from ..grid import true_indices
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import surface_reconstruction
@@ -137,12 +138,13 @@ def assemble(
     records: list[dict[str, Any]] = []
     for piece in pieces:
         _check_piece(piece, bone, method)
-        patch |= piece.voxels
+        # bone is taken off a piece whose method does not do so itself
+        where = tuple(true_indices(piece.voxels).T)
+        patch[where] = ~bone.voxels[where]
         working += piece.working
         records.append(piece.record)
         report("design", min(_SURFACE * len(records) / len(openings), _SURFACE))
     _check_all(method, len(records), len(openings))
-    patch &= ~bone.voxels  # of a method that does not take the bone off itself
     if not patch.any():
         message = f"The method {method} could not bridge any part of the opening."
         raise NoOpening("NothingBridged", message, "Try another method or preset.")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from importlib.metadata import PackageNotFoundError, version
 from os import PathLike
 from pathlib import Path
@@ -53,10 +54,15 @@ def write_outputs(result: RunResult, folder: Path, progress: Callable[[str, floa
 
     progress = progress or (lambda step, done: None)
     progress("writing", 0.85)
-    _write_shapes(result.prosthesis, folder, result.mesh, result.case.load.order)
-    files.write_json(folder / "design.json", design_record(result))
-    progress("report", 0.92)
-    files.write_text(folder / "report.html", report_page(result))
+    # packing, digests and the disk leave the processor to the pictures, which are drawn meanwhile
+    with ThreadPoolExecutor(1) as beside:
+        shapes = beside.submit(_write_shapes, result.prosthesis, folder, result.mesh, result.case.load.order)
+        record = beside.submit(lambda: files.write_json(folder / "design.json", design_record(result)))
+        progress("report", 0.92)
+        page = report_page(result)
+        for written in (shapes, record):
+            written.result()  # or what kept it from being written
+    files.write_text(folder / "report.html", page)
     progress("done", 1.0)
 
 

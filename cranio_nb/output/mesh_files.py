@@ -13,12 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CannotWrite
-from ..geometry.mesh_check import MeshReport, check_mesh
+from ..geometry.mesh_check import MeshReport, check_mesh, is_closed
 from ..mesh import Mesh
 from .files import write_whole
 
 MESH_FORMATS = (".stl", ".ply", ".3mf")
 """Suffixes that `write_mesh` knows."""
+_STL_HEAD = 84
+_STL_FACE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _TOLERANCE_MM = 1e-3  # single precision keeps 6e-5 mm at 800 mm
 
 
@@ -55,6 +57,9 @@ def write_mesh(mesh: Mesh, path: str | Path, *, n_parts: int = 1, report: MeshRe
     if suffix not in MESH_FORMATS:
         raise CannotWrite("BadFormat", f"{path.name} has no known mesh suffix; use {', '.join(MESH_FORMATS)}.")
     validate(mesh, n_parts=n_parts, report=report)
+    if suffix == ".stl":
+        write_whole(path, _stl_bytes(mesh), lambda part: _check_stl_file(part, mesh))
+        return
     write_whole(path, _trimesh(mesh).export(file_type=suffix[1:]), lambda part: _check_mesh_file(part, mesh))
 
 
@@ -87,7 +92,7 @@ def validate(mesh: Mesh, *, n_parts: int = 1, report: MeshReport | None = None) 
     >>> validate(Mesh(cube.vertices, cube.faces)).sound
     True
     """
-    # first our own checks, which say what is wrong and where; then those of two other libraries
+    # first our own checks, which say what is wrong and where; then those of another library
     report = check_mesh(mesh) if report is None else report
     faults = {
         "it has no faces": report.n_faces == 0,
@@ -100,8 +105,8 @@ def validate(mesh: Mesh, *, n_parts: int = 1, report: MeshReport | None = None) 
         f"{report.n_crossings} pairs of faces pass through each other": report.n_crossings > 0,
     }
     found = [fault for fault, there in faults.items() if there]
-    if not found and not _peers_agree(mesh):
-        found = ["manifold3d or trimesh does not take it for a solid"]
+    if not found and not _is_solid(mesh):
+        found = ["manifold3d does not take it for a solid"]
     if found:
         raise CannotWrite("MeshInvalid", f"The mesh is not a solid: {found[0]}.", "Extract or design it again.")
     return report
@@ -114,19 +119,43 @@ def _trimesh(mesh: Mesh) -> Any:
     return trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
 
 
-def _peers_agree(mesh: Mesh) -> bool:
-    """Whether manifold3d and trimesh, with their own tests, take the mesh for a solid."""
+def _is_solid(mesh: Mesh) -> bool:
+    """Whether manifold3d, with its own tests, takes a mesh for a solid."""
     import manifold3d
 
-    solid = manifold3d.Mesh64(np.ascontiguousarray(mesh.vertices, float), np.ascontiguousarray(mesh.faces, np.uint64))
-    return manifold3d.Manifold(solid).status() == manifold3d.Error.NoError and bool(_trimesh(mesh).is_volume)
+    same = manifold3d.Mesh64(np.ascontiguousarray(mesh.vertices, float), np.ascontiguousarray(mesh.faces, np.uint64))
+    solid = manifold3d.Manifold(same)
+    return solid.status() == manifold3d.Error.NoError and solid.volume() > 0
+
+
+def _stl_bytes(mesh: Mesh) -> bytes:
+    """A binary STL: 80 bytes of no meaning, the number of faces, and a record for each."""
+    records = np.zeros(len(mesh.faces), _STL_FACE)
+    records["normal"], records["corners"] = mesh.normals, mesh.corners
+    return bytes(80) + np.uint32(len(records)).astype("<u4").tobytes() + records.tobytes()
+
+
+def _check_stl_file(part: Path, mesh: Mesh) -> None:
+    """Read an STL file back and compare it; joined where corners have one place, its faces must be closed again."""
+    data = part.read_bytes()
+    n_faces = int.from_bytes(data[80:_STL_HEAD], "little")
+    whole = n_faces == len(mesh.faces) and len(data) == _STL_HEAD + n_faces * _STL_FACE.itemsize
+    corners = np.frombuffer(data, _STL_FACE, offset=_STL_HEAD)["corners"] if whole else np.nan
+    if not np.abs(corners - mesh.corners).max() <= _TOLERANCE_MM or not is_closed(_joined(mesh)):
+        raise CannotWrite("MeshInvalid", "The mesh does not survive its file: it reads back as another one.")
+
+
+def _joined(mesh: Mesh) -> Mesh:
+    """The mesh with those vertices made one that lie at one place in single precision."""
+    places, which = np.unique(mesh.vertices.astype(np.float32), axis=0, return_inverse=True)
+    return Mesh(places.astype(float), which.ravel()[mesh.faces])
 
 
 def _check_mesh_file(part: Path, mesh: Mesh) -> None:
     """Read a mesh file back and compare it, corner by corner."""
     import trimesh
 
-    # STL keeps no shared vertices, so faces are compared by the places of their corners
+    # faces are compared by the places of their corners
     back = trimesh.load_mesh(part)
     same = len(back.faces) == len(mesh.faces) and back.is_volume
     if not same or np.abs(_corners(back, mesh) - mesh.corners).max() > _TOLERANCE_MM:

@@ -185,8 +185,10 @@ def _pressure_rows(pressure: ArrayLike, shape: tuple[int, ...], n: int) -> NDArr
 def _solve_curves(factor: NDArray, right: NDArray[np.float64]) -> NDArray[np.float64]:
     """Solve (I + dt A) c = right for the free snaxels of each curve, both shape (B, n - 2, 2)."""
     n_free = right.shape[1]
-    columns = right.transpose(1, 0, 2).reshape(n_free, -1)  # a column for each coordinate of each curve
-    return cho_solve_banded((factor, True), columns).reshape(n_free, -1, 2).transpose(1, 0, 2)
+    # a column for each coordinate of each curve, one after the other in memory as the solver takes them
+    columns = right.transpose(0, 2, 1).reshape(-1, n_free).T
+    solved = cho_solve_banded((factor, True), columns, overwrite_b=True)
+    return solved.T.reshape(-1, 2, n_free).transpose(0, 2, 1)
 
 
 def _clamped_system(

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..errors import InputRefused
-from ..geometry.voxel_pieces import SAME_SLICE, edge_labels
+from ..geometry.voxel_pieces import edge_labels
 from ..geometry.within_skin import within_skin
 from ..options import THRESHOLD
 from ..volume import Volume
@@ -241,11 +241,16 @@ def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.boo
     >>> fill_holes(mask, max_hole_px=4)[0, 2].astype(int)
     array([1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1])
     """
-    labels, n_holes = ndimage.label(~mask, SAME_SLICE)
-    small = np.bincount(labels.ravel(), minlength=n_holes + 1) <= max_hole_px
+    return np.stack([plane | _small_holes(~plane, max_hole_px) for plane in mask])
+
+
+def _small_holes(free: NDArray[np.bool_], max_px: float) -> NDArray[np.bool_]:
+    """The enclosed pieces of what is free in a slice, up to a size; slice by slice, as labels take four bytes each."""
+    labels, n_pieces = ndimage.label(free)
+    small = np.bincount(labels.ravel(), minlength=n_pieces + 1) <= max_px
     small[0] = False  # the bone itself
-    small[edge_labels(labels)] = False
-    return mask | small[labels]
+    small[edge_labels(labels[None])] = False
+    return small[labels]
 
 
 def _n_voxels(box: tuple[slice, ...]) -> int:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from ..grid import touched
+from ..grid import box_around, touched
 from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
@@ -159,4 +159,8 @@ def _sheet(bone: Volume, outermost: OutermostBone, rays: NDArray[np.bool_], radi
     )
     depths = np.arange(0.0, 4.5, 0.5)
     points = grid.centre + directions[:, None, :] * (lengths - depths)[..., None]
-    return bone.with_voxels(touched(bone.to_voxel(points.reshape(-1, 3)), bone.shape) & ~bone.voxels)
+    index = bone.to_voxel(points.reshape(-1, 3))
+    # memory that is never written to takes no room: the rest of the volume stays as it was made
+    voxels, box = touched(index, bone.shape), box_around(index, bone.shape, margin=1)
+    voxels[box] &= ~bone.voxels[box]
+    return bone.with_voxels(voxels)

@@ -140,14 +140,21 @@ def _field(bone: Volume, centre: NDArray, rays: NDArray, level: NDArray) -> Volu
 
 def _cells(field: NDArray) -> NDArray[np.uint8]:
     """What the cubes between eight neighbours of a field are: bone, free of it, or neither; those beyond it neither."""
-    bone, free = field > 0.5, field < 0.5
-    for axis in range(3):
-        low, high = ((slice(None),) * axis + (side,) for side in (slice(None, -1), slice(1, None)))
-        bone, free = bone[low] & bone[high], free[low] & free[high]
     cells = np.full([n + 1 for n in field.shape], _NEITHER, np.uint8)
-    cells[1:-1, 1:-1, 1:-1][bone] = _BONE
-    cells[1:-1, 1:-1, 1:-1][free] = _FREE
+    # two planes at a time, which stay in the processor's cache
+    bone, free = _agree(field[0] > 0.5), _agree(field[0] < 0.5)
+    for plane, own in zip(field[1:], cells[1:-1, 1:-1, 1:-1], strict=True):
+        next_bone, next_free = _agree(plane > 0.5), _agree(plane < 0.5)
+        own[bone & next_bone] = _BONE
+        own[free & next_free] = _FREE
+        bone, free = next_bone, next_free
     return cells
+
+
+def _agree(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Whether the four pixels around each corner of a plane, the outermost left out, are all true."""
+    rows = mask[:-1] & mask[1:]
+    return rows[:, :-1] & rows[:, 1:]
 
 
 def _is_bone(field: NDArray, cells: NDArray[np.uint8], at: NDArray) -> NDArray[np.bool_]:
