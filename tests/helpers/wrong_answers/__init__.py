@@ -15,6 +15,7 @@ from . import (
     surface_reconstruction,
     three_d,
     tour,
+    tuning_lab,
 )
 
 _LESSONS = (
@@ -29,5 +30,6 @@ _LESSONS = (
     rivals,
     three_d,
     paper_tables,
+    tuning_lab,
 )
 CATALOGUE = {number: answers for lesson in _LESSONS for number, answers in lesson.WRONG.items()}
