@@ -85,7 +85,8 @@ _ = panel.set(**start)
 #
 # ## 2. One at a time, on three heads
 #
-# Each setting on each head, by Dice (more is better) and by the mean distance of the two surfaces (less is better).
+# Each setting on each head, by Dice (more is better) and by the mean distance of the two surfaces (less is better). In
+# the pictures `auto` is the `k` that follows from the ends.
 
 # %%
 sweeps = {
@@ -308,10 +309,10 @@ for degree in (0, 2, 4, 6, 8):
 # <details>
 # <summary>Answer</summary>
 #
-# A sphere is far off, as the side of a head is flatter than its mean: 0.263. Each degree pays, up to 6 with 0.940,
-# and 8 is no better. That is the Dice of the default in section 2, from a few lines! Bumps do not show here: the heads
-# are smooth, and so close to a polynomial that any method looks good on them. What such a toy is worth, real rims must
-# say (section 6 takes yours), and the worst case more than the mean.
+# A sphere about the middle of the head is far off: 0.263. Each degree pays, up to 6 with 0.940, and 8 is no better. That
+# is the Dice of the default in section 2, from a few lines! No degree tried here follows bumps, for there are none: the
+# heads are smooth, and a polynomial looks good on what is nearly one. What such a toy is worth, real rims must say
+# (section 6 takes yours), and the worst case more than the mean.
 #
 # </details>
 #
@@ -460,9 +461,9 @@ pictures.scene(
 
 # %% [markdown]
 # Three numbers for "how far off", and they differ much: 0.37 mm on average, 1.75 mm by HD95, 2.77 mm at most. The
-# largest is that of a single node, on the rim, as the colours show; one corner of one voxel makes it. HD95 is counted
-# from voxel to voxel, so it goes in their steps, and most settings of section 1 share it. To tune by, take what moves
-# smoothly, the mean or Dice; and look at the map before you believe any of them.
+# largest belongs to one node in one of the two places at the rim that the colours show. HD95 is counted from voxel to
+# voxel, so it goes in steps of them, and most settings of section 1 share it. To tune by, take what moves smoothly, the
+# mean or Dice; and look at the map before you believe any of them.
 #
 # ## A mistake to make once
 #
