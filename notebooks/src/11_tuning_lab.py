@@ -73,9 +73,9 @@ panel
 
 # %% tags=["nbval-check-output"]
 start = dict(panel.values)
-for change in ({}, quick, {"tension": 2}, {"rigidity": 2}, {"skip_mm": 3}):
-    view = panel.set(**start | (quick if change else {}) | change).view
-    print(f"{change or 'default'!s:36} {view.line[:24]}")
+some = {"rigidity": 2}, {"skip_mm": 3}, {"reach_mm": 5}, quick | {"tension": 2}
+for change in ({}, *some):
+    print(f"{change or 'default'!s:52} {panel.set(**start | change).view.line[:24]}")
 _ = panel.set(**start)
 
 # %% [markdown]
@@ -137,13 +137,11 @@ known = {(n, v): d for n in sweeps for v, d in zip(sweeps[n], class_head[n], str
 dice, off = usual.T
 print(f"default: Dice {dice.mean():.3f}, from {dice.min():.3f} to {dice.max():.3f}; ", end="")
 print(f"{off.mean():.2f} mm off, from {off.min():.2f} to {off.max():.2f}")
-print("                     Dice: change   spread | mm off: change   spread | class head")
+print("                     Dice: change   spread | mm off: change | class head, Dice")
 for (name, value), seen in tried.items():
     gain = seen - usual
-    cells = [
-        f"{m:+8.3f} {s:8.3f}" for m, s in zip(gain.mean(0), gain.std(0, ddof=1), strict=True)
-    ]
-    print(f"{name:12} {value:7g} {cells[0]:>21} {cells[1]:>25} {known[name, value]:13.3f}")
+    cells = f"{gain[:, 0].mean():+14.3f} {gain[:, 0].std(ddof=1):8.3f}"
+    print(f"{name:12} {value:7g} {cells} {gain[:, 1].mean():+15.2f} {known[name, value]:18.3f}")
 
 # %% tags=["nbval-check-output"]
 shown = []
@@ -217,12 +215,14 @@ def apex(gap, tension, rigidity=1.0, factor=1.0):
     ]
 
 
-# %% tags=["nbval-check-output"]
+# %%
 gaps, weights = (40.0, 60.0, 80.0), (0.5, 1.0, 2.0, 4.0)
 truth = np.array([R - np.sqrt(R**2 - gap**2 / 4) for gap in gaps])
 auto = np.array([[apex(gap, w) for gap in gaps] for w in weights]) / truth
 times = np.array([[apex(gap, w, factor=w) for gap in gaps] for w in weights]) / truth
 stiff = np.array([[apex(gap, 1.0, w) for gap in gaps] for w in (0.0, 8.0)]) / truth
+
+# %% tags=["nbval-check-output"]
 print("height of the apex over the true one, for gaps of 40, 60 and 80 mm")
 for w, a, b in zip(weights, auto, times, strict=True):
     print(
@@ -372,7 +372,7 @@ for name in ("slicewise", "polynomial"):
 slices = summaries.where(rows, (rows["contender"] == "slicewise") & (rows["options"] != "{}"))
 varied = sensitivity.parameters(slices, sensitivity.usual_options(slices))
 for effect in sensitivity.effects(slices, varied, "dice"):
-    means, share = ", ".join(f"{m:.3f}" for m in effect.means), 100 * effect.share
+    means, share = ", ".join(f"{m:.2f}" for m in effect.means), 100 * effect.share
     print(f"{effect.parameter.name:12} alone: {share:3.0f} % of the variance ({means})")
 for names, share in sensitivity.interactions(slices, varied, "dice").items():
     print(f"{' and '.join(names)} together, beyond that: {100 * share:.0f} %")
@@ -388,7 +388,7 @@ for ax, means, one, other in ((left, table, a, b), (right, table.T, b, a)):
     ax.set_xticks(range(len(one.labels)), one.labels)
 alt = "Dice by tension, a line for each k, and by k, a line for each tension: the lines cross."
 pictures.picture(
-    fig, alt, f"best {table.max():.3f}, worst {table.min():.3f}; means of three heads"
+    fig, alt, f"best {table.max():.2f}, worst {table.min():.2f}; means of three heads"
 )
 
 # %% [markdown]
@@ -430,23 +430,17 @@ print(f"the default {top.usual.mean:.3f}")
 # truth (`CRANIO_NB_SCAN` and `CRANIO_NB_TRUTH`), the synthetic one if not.
 
 # %% tags=["nbval-check-output"]
-true = cn.evaluation.against_truth.true_prosthesis(
-    case.truth, bones[0], holes[0][0].head_centre
-)
-designs = {
-    name: cn.design(bones[0], holes[0], method=name) for name in ("slicewise", "polynomial")
-}
+truths, centre = cn.evaluation.against_truth, holes[0][0].head_centre
+true = truths.true_prosthesis(case.truth, bones[0], centre)
+designs = {m: cn.design(bones[0], holes[0], method=m) for m in ("slicewise", "polynomial")}
 print("a synthetic head" if case.phantom else "a scan of your own", end=", ")
 print("voxels of", " x ".join(f"{size:.2f}" for size in case.ct.spacing), "mm")
 apart = {}
 for name, made in designs.items():
-    seen = cn.evaluation.against_truth.measure_against(made, true, bones[0])
-    apart[name] = seen.distances["outer"]
-    print(
-        f"{name:10} Dice {seen.score.dice:.3f}, outer side {apart[name].mean():.2f} mm off, ",
-        end="",
-    )
-    print(f"{apart[name].max():.2f} mm at most; HD95 {seen.score.hd95:.2f} mm")
+    seen = truths.measure_against(made, true, bones[0])
+    off = apart[name] = seen.distances["outer"]
+    print(f"{name:10} Dice {seen.score.dice:.3f}, outer side {off.mean():.2f} mm off, ", end="")
+    print(f"{off.max():.2f} mm at most; HD95 {seen.score.hd95:.2f} mm")
 
 # %% [markdown]
 # The skull with the outer side of the prosthesis on it, coloured by its distance from the true bone. Turn it.
