@@ -63,7 +63,7 @@ def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
 
 def _digest(mask: NDArray[np.bool_]) -> bytes:
     """What tells a mask from others."""
-    return repr(mask.shape).encode() + hashlib.blake2b(np.packbits(mask)).digest()
+    return repr(mask.shape).encode() + hashlib.blake2b(np.packbits(mask).tobytes()).digest()
 
 
 def _measured(bone: Volume, opening: Opening) -> RadiusMap:

@@ -22,9 +22,12 @@ def _gains(scores, usual):
     return scores - scores[:, [usual]]
 
 
-def _paired(scores, usual):
-    gains = _gains(scores, usual)
+def _rows(gains):
     return np.array([gains.mean(axis=0), gains.std(axis=0, ddof=1)])
+
+
+def _paired(scores, usual):
+    return _rows(_gains(scores, usual))
 
 
 def _circles():
@@ -88,7 +91,7 @@ EXERCISES: dict[str, Exercise] = {
                 "The spread is that of the scores, so it holds how heads differ: take that of the differences.",
             ),
             (
-                lambda s, u: np.array([s.mean(axis=0), s.std(axis=0, ddof=1)]),
+                lambda s, u: _rows(s),
                 "These are the scores themselves: take off, head by head, that of the usual setting.",
             ),
             (
@@ -107,10 +110,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, u: np.array([np.abs(_gains(s, u)).mean(axis=0), _gains(s, u).std(axis=0, ddof=1)]),
                 "Without their signs losses count as gains: no np.abs.",
             ),
-            (
-                lambda s, u: _paired(s, 0),
-                "Always against the first setting: the usual one is the column `usual`.",
-            ),
+            (lambda s, u: _paired(s, 0), "Always against the first setting: the usual one is the column `usual`."),
             (
                 lambda s, u: np.array([_gains(s, u).mean(axis=0), _gains(s, u).var(axis=0, ddof=1)]),
                 "This is the variance; the spread is its root, std.",
@@ -128,16 +128,11 @@ EXERCISES: dict[str, Exercise] = {
                 "Heads are rows: mean and spread over heads go along axis 0.",
             ),
             (
-                lambda s, u: np.array([(s - s.mean()).mean(axis=0), (s - s.mean()).std(axis=0, ddof=1)]),
+                lambda s, u: _rows(s - s.mean()),
                 "Differences from the mean of all: take off the score of the usual setting on the same head.",
             ),
             (
-                lambda s, u: np.array(
-                    [
-                        (s - s.mean(axis=1, keepdims=True)).mean(axis=0),
-                        (s - s.mean(axis=1, keepdims=True)).std(axis=0, ddof=1),
-                    ]
-                ),
+                lambda s, u: _rows(s - _of_rows(s)),
                 "Differences from each head's mean: take off the score of the usual setting.",
             ),
             (
@@ -161,56 +156,41 @@ EXERCISES: dict[str, Exercise] = {
         answer=Answer("one number", unit="mm per index squared", tolerance=1e-9),
         mistakes=(
             (
-                lambda length, r, n, w: _pressure(length, r, n, 1.0),
+                lambda d, r, n, w: _pressure(d, r, n, 1.0),
                 "The tension is not used: twice of it needs twice the pressure.",
             ),
             (
-                lambda length, r, n, w: _pressure(length, r, n, 1 / w),
+                lambda d, r, n, w: _pressure(d, r, n, 1 / w),
                 "Divided by the tension: a stronger one needs more pressure, not less.",
             ),
+            (lambda d, r, n, w: w * (d / n) ** 2 / r, "n snaxels have n - 1 steps between them."),
+            (lambda d, r, n, w: w * (d / (n + 1)) ** 2 / r, "n snaxels have n - 1 steps between them."),
+            (lambda d, r, n, w: w * d / (n - 1) / r, "The step comes in squared: k is a length per index *squared*."),
             (
-                lambda length, r, n, w: w * (length / n) ** 2 / r,
-                "n snaxels have n - 1 steps between them.",
-            ),
-            (
-                lambda length, r, n, w: w * (length / (n + 1)) ** 2 / r,
-                "n snaxels have n - 1 steps between them.",
-            ),
-            (
-                lambda length, r, n, w: w * length / (n - 1) / r,
-                "The step comes in squared: k is a length per index *squared*.",
-            ),
-            (
-                lambda length, r, n, w: w * (length / (n - 1)) ** 2 * r,
+                lambda d, r, n, w: w * (d / (n - 1)) ** 2 * r,
                 "Multiplied by the radius: a flat bow, of large radius, needs little pressure.",
             ),
             (
-                lambda length, r, n, w: w * (length / (n - 1)) ** 2 / r**2,
+                lambda d, r, n, w: w * (d / (n - 1)) ** 2 / r**2,
                 "The curvature of a circle is 1 / radius, not its square.",
             ),
             (
-                lambda length, r, n, w: w * (length / (n - 1)) ** 2 / (2 * r),
+                lambda d, r, n, w: w * (d / (n - 1)) ** 2 / (2 * r),
                 "The curvature of a circle is 1 / radius, not half of it.",
             ),
+            (lambda d, r, n, w: w**2 * (d / (n - 1)) ** 2 / r, "The tension comes in once, not squared."),
+            (lambda d, r, n, w: w * d**2 / r, "This is for one step over the whole length: divide it first."),
+            (lambda d, r, n, w: w * (d / (n - 1)) ** 2, "The radius is not used: the curvature is 1 / radius."),
             (
-                lambda length, r, n, w: w**2 * (length / (n - 1)) ** 2 / r,
-                "The tension comes in once, not squared.",
-            ),
-            (lambda length, r, n, w: w * length**2 / r, "This is for one step over the whole length: divide it first."),
-            (
-                lambda length, r, n, w: w * (length / (n - 1)) ** 2,
-                "The radius is not used: the curvature is 1 / radius.",
-            ),
-            (
-                lambda length, r, n, w: w / r,
+                lambda d, r, n, w: w / r,
                 "This is the pull per mm squared; per index squared it is the step squared times that.",
             ),
             (
-                lambda length, r, n, w: w * length**2 / (8 * r),
+                lambda d, r, n, w: w * d**2 / (8 * r),
                 "This is the height of the bow, k N^2 / 8 (lesson 04); the k itself is wanted.",
             ),
             (
-                lambda length, r, n, w: -_pressure(length, r, n, w),
+                lambda d, r, n, w: -_pressure(d, r, n, w),
                 "Outward is positive: the pressure has the sign of the curvature it holds.",
             ),
         ),
@@ -244,27 +224,15 @@ EXERCISES: dict[str, Exercise] = {
                 lambda t: _of_rows(t) + _of_columns(t) - t.mean(),
                 "This is what the parameters make without an interaction: the table less this is wanted.",
             ),
-            (
-                lambda t: -_together(t),
-                "The sign is turned: the table less what the parameters make alone.",
-            ),
-            (
-                lambda t: t - _of_rows(t) - _of_columns(t) + 2 * t.mean(),
-                "The mean of all is added once, not twice.",
-            ),
+            (lambda t: -_together(t), "The sign is turned: the table less what the parameters make alone."),
+            (lambda t: t - _of_rows(t) - _of_columns(t) + 2 * t.mean(), "The mean of all is added once, not twice."),
             (
                 lambda t: t - _of_rows(t) - _of_columns(t) - t.mean(),
                 "The mean of all is added, not taken off a third time.",
             ),
-            (
-                lambda t: np.abs(_together(t)),
-                "The signs say where the pair does better and where worse: keep them.",
-            ),
+            (lambda t: np.abs(_together(t)), "The signs say where the pair does better and where worse: keep them."),
             (lambda t: _together(t) ** 2, "These are squares; the parts themselves are wanted."),
-            (
-                lambda t: np.abs(_together(t)).max(),
-                "This is the largest of them; a table is wanted.",
-            ),
+            (lambda t: np.abs(_together(t)).max(), "This is the largest of them; a table is wanted."),
             (
                 lambda t: t / _of_rows(t) / _of_columns(t) * t.mean(),
                 "These are ratios; effects are added, so take means off.",
@@ -277,10 +245,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda t: t - t[:1] - t[:, :1] + t[0, 0],
                 "These are differences from the first level: take off the means of rows and columns.",
             ),
-            (
-                lambda t: _together(t) / t.std(),
-                "No need to scale: leave the parts in the unit of the table.",
-            ),
+            (lambda t: _together(t) / t.std(), "No need to scale: leave the parts in the unit of the table."),
         ),
         hints=(
             "Without an interaction each entry is the mean of all + what its row adds + what its column adds.",
@@ -341,20 +306,14 @@ EXERCISES: dict[str, Exercise] = {
                 "One score for each head left out, and right: return their mean.",
             ),
             (lambda s: _others(s).argmax(axis=1), "These are the settings chosen: return how they did."),
-            (
-                lambda s: s[0, _others(s)[0].argmax()],
-                "Only the first head is left out: each has its turn.",
-            ),
+            (lambda s: s[0, _others(s)[0].argmax()], "Only the first head is left out: each has its turn."),
             (
                 lambda s: _on_left_out(
                     s, np.array([np.delete(s, i, axis=0).argmax() % s.shape[1] for i in range(len(s))])
                 ),
                 "Chosen by the single best score among the others: choose by their mean.",
             ),
-            (
-                lambda s: _held_out(s.T),
-                "Rows are heads and columns settings: heads are left out.",
-            ),
+            (lambda s: _held_out(s.T), "Rows are heads and columns settings: heads are left out."),
         ),
         hints=(
             "For each head: take its row out, and average each setting over the rows that are left.",
