@@ -138,10 +138,12 @@ def slow_rows(
     rigidities = list(sheet.controls["wavelength_mm"].stops)
     yield "elastic_sheet: rigidity, drawn ahead", measure(sheet, "wavelength_mm", rigidities, repeats)
     yield "elastic_sheet: step (the player)", measure(sheet, "step", [1, 2, 3, 4, 5, 6], repeats)
-    tuned = widgets.tuner(phantom_case("tiny"))
-    reaches = [6.0, 8.0, 12.0, 14.0]
-    for word in ("all new", "again"):
-        yield f"tuner: reach, {word}", measure(tuned, "reach_mm", reaches, len(reaches))
+    for size in ("tiny", "class"):
+        case = phantom_case(size)
+        tuned = widgets.tuner(cn.Volume(case.hu, case.affine), cn.Volume(case.implant, case.affine))
+        reaches = np.arange(4.0, 14.0, 0.5).tolist()
+        for word in ("all new", "again"):
+            yield f"tuner ({size}): reach, {word}", measure(tuned, "reach_mm", reaches, len(reaches))
 
 
 def main() -> None:

@@ -15,6 +15,7 @@ from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
 from ..drawing.described import described
 from ..drawing.palette import BLACK, BLUE, BONE, GREEN, ORANGE, PATCH, PURPLE, SKULL, VERMILLION, rgb_shares
+from ..drawing.scene3d import show_meshes as show_scene
 from ..drawing.shading import Solid, render
 from ..mesh import Mesh
 
@@ -32,6 +33,7 @@ __all__ = [
     "axes",
     "picture",
     "plot_lines",
+    "scene",
     "show_curve",
     "show_errors",
     "show_hu",
@@ -47,6 +49,9 @@ LINES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"), (BLACK, 
 
 MASKS = {"bone": BONE, "patch": PATCH, "missing": VERMILLION, "extra": BLUE, "removed": ORANGE}
 """Colours of `show_mask` by what a mask means; "#RRGGBB" does as well."""
+
+scene = show_scene
+"""Meshes to turn, each in a colour or coloured by numbers at its vertices; see `scene3d.show_meshes`."""
 
 picture = described
 """A figure with its description and its line of numbers: the last line of a cell."""

@@ -5,6 +5,8 @@ Frames: map (v, u) about the opening's direction, see `ray_grid`; radii in mm; t
 
 from __future__ import annotations
 
+import hashlib
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -26,6 +28,8 @@ _AROUND_MM = 20.0  # of bone beside the rim that gives the usual thickness
 _FLAT_MM = 1e-3  # across the line of sight: an opening of less is a point
 _ROUGH_MM = 1.0  # of voxels that would tell a surface as badly as a scan's blur and the bone's bumps do on any grid
 _LEAST_RAYS = 12  # into a hole, and to bone beside it: some 2 mm across
+_KEPT = 4  # maps of the newest openings, up to some MB each
+_maps: dict[tuple[bytes, ...], RadiusMap] = {}  # by what they were measured in, the newest last
 
 
 def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
@@ -41,12 +45,30 @@ def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
     -------
     RadiusMap
         Centred on the opening, to about 55 mm beyond it. Its hole is the opening with its bevelled or thinned rim.
+        Its arrays are read-only: methods and settings that are tried on one skull share it.
 
     Raises
     ------
     InputRefused
         ``NoHole`` where the opening is no hole with bone around it, seen from the head's centre.
     """
+    # known by the voxels themselves: an array that was changed in between is another skull
+    place = bone.affine.tobytes() + opening.head_centre.tobytes()
+    asked = (_digest(bone.voxels), _digest(opening.sheet.voxels), place)
+    found = _maps.pop(asked, None) or _measured(bone, opening)
+    _maps[asked] = found
+    for old in list(_maps)[:-_KEPT]:
+        _maps.pop(old, None)  # another thread may have done so
+    return found
+
+
+def _digest(mask: NDArray[np.bool_]) -> bytes:
+    """What tells a mask from others."""
+    return repr(mask.shape).encode() + hashlib.blake2b(np.packbits(mask).tobytes()).digest()
+
+
+def _measured(bone: Volume, opening: Opening) -> RadiusMap:
+    """The map of `measure_around`."""
     # a grid that reaches beyond the opening on all sides
     axes = _axes(opening, bone)
     points = opening.sheet.to_world(true_indices(opening.sheet.voxels)) - opening.head_centre
@@ -60,6 +82,8 @@ def measure_around(bone: Volume, opening: Opening) -> RadiusMap:
     seen = np.isfinite(outer)
     hole = _missing(outer - inner, hole, float(np.median(outer[seen]) * grid.step_rad)) if seen.any() else hole
     _check_hole(grid, hole, seen)
+    for array in (outer, inner, hole):
+        array.setflags(write=False)
     return RadiusMap(grid, outer=outer, inner=inner, hole=hole)
 
 

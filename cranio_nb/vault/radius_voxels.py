@@ -14,6 +14,7 @@ from ..volume import Volume
 from .ray_grid import RadiusMap, filled_from_nearest
 
 _FILM_MM = 0.75  # on the bone beside a hole that nobody would build
+_MEDIAN, _OPENED = 5, 2  # rays: a step that is narrower is noise
 _NEAR_MM = 20.0  # of bone beside a hole that gives the thickness of sound bone
 
 
@@ -39,8 +40,8 @@ def voxels_between(
     region = ndimage.binary_dilation(filled & radius_map.hole, iterations=max(1, round(1.0 / radius_map.step_mm)))
     top, bottom = (filled_from_nearest(np.where(filled, radius, np.nan)) for radius in (outer, inner))
     # what reaches over the rim ends with the bone's own surface: no flap and no film lies on the bone
-    outside = ~radius_map.hole | _is_level(top - radius_map.outer)
-    inside = ~radius_map.hole | _is_level(radius_map.inner - bottom)
+    outside = ~radius_map.hole | _is_level(top - radius_map.outer, radius_map.hole)
+    inside = ~radius_map.hole | _is_level(radius_map.inner - bottom, radius_map.hole)
     top[outside] = np.fmin(top, radius_map.outer)[outside]
     bottom[inside] = np.fmax(bottom, radius_map.inner)[inside]
     # only a box around the prosthesis is filled
@@ -76,10 +77,19 @@ def thickened(
     return outer + short, inner - short
 
 
-def _is_level(step: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """Where a prosthesis rises so little above the bone that this bone is whole; a thinned rim is a real step down."""
-    rise = ndimage.median_filter(np.nan_to_num(step, nan=np.inf), 5) >= _FILM_MM
-    return ~ndimage.binary_opening(rise, iterations=2)
+def _is_level(step: NDArray[np.float64], hole: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Where, in a hole, a prosthesis rises so little above the bone that this bone is whole, shape (M, M).
+
+    A thinned rim is a real step down. Beside the hole nothing is said: False.
+    """
+    # what lies further from the hole than both filters reach does not count
+    margin = _MEDIAN // 2 + 2 * _OPENED
+    sides = ndimage.find_objects(hole.astype(np.uint8))[0]
+    box = tuple(slice(max(side.start - margin, 0), side.stop + margin) for side in sides)
+    level = np.zeros(step.shape, bool)
+    rise = ndimage.median_filter(np.nan_to_num(step[box], nan=np.inf), _MEDIAN) >= _FILM_MM
+    level[box] = ~ndimage.binary_opening(rise, iterations=_OPENED)
+    return level & hole
 
 
 def _between(

@@ -453,7 +453,8 @@ pictures.picture(fig, alt, f"volumes {' and '.join(volumes)} cm3")
 # only the voxels near bone. `panel.parameters` is what `cranio-nb design --params` takes as JSON.)
 
 # %% tags=["nbval-check-output"]
-panel = widgets.tuner(classroom.synthetic("tiny").phantom)
+small = classroom.synthetic("tiny")
+panel = widgets.tuner(cn.Volume(small.phantom.bone, small.ct.affine), small.truth)
 panel
 
 # %% tags=["nbval-check-output"]

@@ -5,6 +5,7 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.opening import Opening
+from cranio_nb.vault import radius_measurement
 from cranio_nb.vault.radius_measurement import measure_around
 from cranio_nb.vault.radius_voxels import voxels_between
 from cranio_nb.volume import Volume
@@ -104,3 +105,24 @@ def test_a_turned_header_turns_the_map_and_changes_no_radius():
     np.testing.assert_allclose(moved.grid.axes, here.grid.axes @ move[:3, :3].T, atol=1e-9)
     np.testing.assert_allclose(moved.outer, here.outer, atol=1e-5)
     np.testing.assert_array_equal(moved.hole, here.hole)
+
+
+def test_a_skull_that_is_measured_again_is_not_taken_for_another():
+    bone, _, opening = head((3.0, 3.0, 3.0))
+    first = measure_around(bone, opening)
+    assert measure_around(Volume(bone.voxels.copy(), bone.affine), opening) is first
+    with pytest.raises(ValueError, match="read-only"):
+        first.hole[0, 0] = True
+    bone.voxels[:10] = False  # the same array, another skull
+    changed = measure_around(bone, opening)
+    assert np.isfinite(changed.outer).sum() < np.isfinite(first.outer).sum()
+
+
+def test_only_the_newest_maps_are_kept(monkeypatch):
+    monkeypatch.setattr(radius_measurement, "_maps", kept := {})
+    monkeypatch.setattr(radius_measurement, "_KEPT", 1)
+    bone, _, opening = head((3.0, 3.0, 3.0))
+    first = measure_around(bone, opening)
+    assert list(kept.values()) == [first]
+    second = measure_around(bone.with_voxels(np.roll(bone.voxels, 1, axis=1)), opening)
+    assert list(kept.values()) == [second]

@@ -6,6 +6,7 @@ Frame: slice (row, col) in mm about the head's centre.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,14 +55,17 @@ def bridge(
     voxels : ndarray of bool, shape (P, R, C)
     """
     radius_map = radius_measurement.measure_around(bone, opening)
+    fans = slicing.make_fans(radius_map, directions)
+    profiles = [slicing.read_profile(radius_map, fan) for fan in fans]
+    ends = [by_rays(p, skip_mm=skip_mm, reach_mm=reach_mm, coupling_mm=coupling_mm) for p in profiles]
+    # the balloons of all fans move together: a step costs little more for all than for one fan
+    relaxed = iter(inflate.inflate([one for slices in ends for one in slices], np.zeros(2), settings))
+    into_hole = radius_map.grid.directions[radius_map.hole]
     made, radii, weights = [], [], []
-    for fan in slicing.make_fans(radius_map, directions):
-        # curves of this direction, and their radii and weights on the map's own rays
-        profile = slicing.read_profile(radius_map, fan)
-        ends = by_rays(profile, skip_mm=skip_mm, reach_mm=reach_mm, coupling_mm=coupling_mm)
-        results = inflate.carry(inflate.inflate(ends, np.zeros(2), settings))
+    for fan, profile, slices in zip(fans, profiles, ends, strict=True):
+        results = inflate.carry(list(islice(relaxed, len(slices))))
         made.append(SlicedDesign(opening, fan.frames(radius_map.grid.centre), 1.0, results))
-        at = fan.locate(radius_map.grid.directions[radius_map.hole])
+        at = fan.locate(into_hole)
         # all directions are compared on the same rays, those of the radius map into the hole
         both = [_on_rays(results, boundary, profile) for boundary in (0, 1)]
         radii.append([ndimage.map_coordinates(r, at, order=1, cval=np.nan) for r, _ in both])

@@ -12,6 +12,7 @@ from . import (
     surface_reconstruction,
     three_d,
     tour,
+    tuning_lab,
 )
 from .task import Exercise
 
@@ -27,6 +28,7 @@ _LESSONS = (
     rivals,
     three_d,
     paper_tables,
+    tuning_lab,
 )
 
 EXERCISES: dict[str, Exercise] = {number: task for lesson in _LESSONS for number, task in lesson.EXERCISES.items()}

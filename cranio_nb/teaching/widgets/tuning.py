@@ -8,19 +8,24 @@ from __future__ import annotations
 import json
 from functools import lru_cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...drawing.canvas import Canvas
 from ...drawing.palette import BLACK, BLUE, GREY, PALE
-from ...evaluation.against_truth import TruthCheck, check_truth
+from ...evaluation import scores
+from ...evaluation.against_truth import SIDES, side_distances, true_prosthesis
 from ...mesh import OUTER
 from ...methods.catalogue import options_of as options_declared
 from ...methods.design import design
+from ...opening import Opening
+from ...options import THRESHOLD
 from ...output.files import json_text
 from ...output.guard import check_writes
 from ...output.staging import replace_file
+from ...prosthesis import Prosthesis
+from ...stages.segmentation import bone_of
 from ...vault import opening_search
 from ...volume import Volume
 from .controls import Choice, Slider, Switch, View
@@ -28,13 +33,11 @@ from .evaluation import DistanceMap, draw_distances, map_distances
 from .panel import Panel
 from .parts import HEIGHT, WIDTH, draw_colour_scale
 
-if TYPE_CHECKING:
-    from data_synth import Case
-
 FILE = "cranio_nb_parameters.json"
 SLICES = ("axial, as in the paper", "fans from inside the head")
 _WORSE = "#B34E00"  # vermillion, dark enough for letters
 _MAP = 345  # px: width of the map
+THRESHOLD_HU = "threshold_hu"
 _TOP = 1.5  # mm at the upper end of the colour scale
 _PRESETS: dict[str, dict[str, Any]] = {
     "axial slices": {"slices": SLICES[0]},
@@ -63,9 +66,9 @@ class Tuner(Panel):
         Returns
         -------
         dict
-            As `cranio-nb design --params` and `cn.design` take them.
+            As `cranio-nb design --params` and `cn.design` take them; the threshold is no option of a design.
         """
-        return options_of(**self.values)
+        return options_of(**{name: value for name, value in self.values.items() if name != THRESHOLD_HU})
 
     def save(self, path: str | Path = FILE) -> Path:
         """Write the parameters as JSON.
@@ -97,24 +100,44 @@ class Tuner(Panel):
             return False
 
 
-def tuner(case: Case) -> Tuner:
-    """Design and score a phantom again with every move.
+def tuner(scan: Volume, truth: Volume) -> Tuner:
+    """Design and score again with every move.
 
     Parameters
     ----------
-    case : Case
-        From `data_synth.phantom_case`; "tiny" answers within about two seconds, at once where it was before.
+    scan : Volume
+        HU, or a bool mask of the bone.
+    truth : Volume
+        Bool mask of the missing bone on the same grid.
 
     Returns
     -------
     Tuner
-        Its controls are those options and ``own``: whether ``pressure_mm`` is set by hand.
+        Its controls are the options of the method and ``own``: whether ``pressure_mm`` is set by hand. With HU there
+        is ``threshold_hu`` besides.
     """
-    # openings do not depend on the options: found once
-    bone, truth = Volume(case.bone, case.affine), Volume(case.implant, case.affine)
-    openings = opening_search.find_openings(bone)
-    made = lru_cache(maxsize=32)(lambda *values: _measured(bone, truth, openings, options_of(*values)))
-    controls = (
+    skull = lru_cache(maxsize=8)(lambda threshold: _skull(scan, truth, threshold))
+    made = lru_cache(maxsize=32)(lambda threshold, *values: _measured(skull(threshold), options_of(*values)))
+    controls = _controls()
+    if scan.voxels.dtype != bool:
+        assert THRESHOLD.default is not None
+        label = "threshold: least HU of bone"
+        controls = (Slider(THRESHOLD_HU, label, *THRESHOLD.span, THRESHOLD.default, 25, unit="HU"), *controls)
+
+    def draw(**values: Any) -> View:
+        now = made(values.get(THRESHOLD_HU), *(value for name, value in values.items() if name != THRESHOLD_HU))
+        return _view(now, first, values)
+
+    # the scores at the start, to compare with
+    start = {control.name: control.value for control in controls}
+    first = made(start.pop(THRESHOLD_HU, None), *start.values())
+    actions = {"save the parameters": lambda panel: f"Written: {panel.save()}"}
+    return Tuner(controls, draw, alt=_ALT, presets=_PRESETS, actions=actions, slow=True)
+
+
+def _controls() -> tuple[Slider | Choice | Switch, ...]:
+    """What the options of the method are set by."""
+    return (
         Choice("slices", "slices", SLICES, SLICES[1]),
         _slider("directions", "directions of the fans"),
         _slider("skip_mm", "skip: left out at the cut", 0.5),
@@ -126,17 +149,6 @@ def tuner(case: Case) -> Tuner:
         _slider("tension", "w\N{SUBSCRIPT ONE}: tension", 0.1, expert=True),
         _slider("rigidity", "w\N{SUBSCRIPT TWO}: rigidity", 0.1, expert=True),
         Switch("smooth", "surface without stairs", True, expert=True),
-    )
-    # the scores at the start, to compare with
-    first = made(*(control.value for control in controls))
-    actions = {"save the parameters": lambda panel: f"Written: {panel.save()}"}
-    return Tuner(
-        controls,
-        lambda **values: _view(made(*values.values()), first, values),
-        alt=_ALT,
-        presets=_PRESETS,
-        actions=actions,
-        slow=True,
     )
 
 
@@ -192,18 +204,30 @@ def _slider(name: str, label: str, step: float = 1.0, *, value: float | None = N
 Measured = tuple[tuple[float, ...], DistanceMap]
 
 
-def _measured(bone: Volume, truth: Volume, openings: tuple[Any, ...], options: dict[str, Any]) -> Measured:
+class _Skull(NamedTuple):
+    """What does not depend on the options: found once for each threshold."""
+
+    bone: Volume
+    openings: tuple[Opening, ...]
+    true: Prosthesis
+
+
+def _skull(scan: Volume, truth: Volume, threshold: float | None) -> _Skull:
+    """The bone of a scan, its openings, and the missing bone as a prosthesis."""
+    bone = bone_of(scan, threshold)
+    openings = opening_search.find_openings(bone, scan=scan)
+    return _Skull(bone, openings, true_prosthesis(truth, bone, openings[0].head_centre))
+
+
+def _measured(skull: _Skull, options: dict[str, Any]) -> Measured:
     """Measures of one design in the order of `_MEASURES`, and its map of distances."""
-    made = design(bone, openings, method="slicewise", **options)
-    check = check_truth(made, truth, bone, openings[0].head_centre)
-    return _measures(check), map_distances(made, check.prosthesis, OUTER)
-
-
-def _measures(check: TruthCheck) -> tuple[float, ...]:
-    """The numbers of the table, in its order."""
-    score = check.score
-    sides = (float(np.mean(check.distances[side])) for side in ("outer", "inner"))
-    return score.dice, score.border_dice, score.hd95, score.assd, *sides, score.volume_ratio
+    made = design(skull.bone, skull.openings, method="slicewise", **options)
+    assert made.patch is not None and skull.true.patch is not None
+    score = scores.score(made.patch, skull.true.patch, skull.bone)
+    off = side_distances(made, skull.true)
+    sides = (float(np.mean(off.get(side, np.nan))) for side in SIDES)
+    numbers = score.dice, score.border_dice, score.hd95, score.assd, *sides, score.volume_ratio
+    return numbers, map_distances(made, skull.true, OUTER)
 
 
 def _view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
