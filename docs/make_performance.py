@@ -102,7 +102,7 @@ def main() -> None:
     """Write page and picture."""
     found = json.loads(STORE.read_text())
     PAGE.write_text(page(found), encoding="utf-8")
-    picture(found).savefig(PICTURE, dpi=100)
+    picture(found).savefig(PICTURE, dpi=100, metadata={"Software": None})
 
 
 if __name__ == "__main__":
