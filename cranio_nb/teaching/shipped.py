@@ -54,7 +54,7 @@ def lesson_names() -> list[str]:
     Examples
     --------
     >>> lesson_names()[0], len(lesson_names())
-    ('00_tour.ipynb', 22)
+    ('00_tour.ipynb', 24)
     """
     home = shipped_lessons()
     found = (*home.glob("*.ipynb"), *home.glob(f"{EXERCISES_HOME}/*.ipynb"))
