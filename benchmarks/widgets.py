@@ -9,13 +9,10 @@ Beside it the same update through a new matplotlib figure, and through one figur
 from __future__ import annotations
 
 import argparse
-import os
 import time
 from collections.abc import Callable, Iterator
 
 import numpy as np
-
-os.environ["CRANIO_NB_MODE"] = "widget"
 
 import cranio_nb as cn
 from cranio_nb.drawing import figures

@@ -22,6 +22,18 @@ settings.register_profile("long", max_examples=200, deadline=None)
 settings.load_profile("few")
 
 
+@pytest.fixture(autouse=True)
+def own_settings_stay():
+    """What a test sets of the package's environment variables it takes back: the next tests are not to depend on it."""
+    before = own_settings()
+    yield
+    assert own_settings() == before
+
+
+def own_settings() -> dict[str, str]:
+    return {name: value for name, value in os.environ.items() if name.startswith("CRANIO_NB_")}
+
+
 @pytest.fixture(scope="session")
 def real_data() -> Path:
     """Folder of real scans, from CRANIO_NB_DATA; the test is skipped where it is not set."""

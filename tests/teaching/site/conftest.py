@@ -17,8 +17,10 @@ def static(monkeypatch):
 
 @pytest.fixture(scope="session")
 def small():
-    """The lesson as it ran; not to be changed."""
-    return lesson()
+    """The lesson as it ran, without widgets; not to be changed."""
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setenv("CRANIO_NB_MODE", "static")
+        return lesson()
 
 
 @pytest.fixture(scope="session")
