@@ -21,8 +21,6 @@ TRUTH = PURPLE
 PROSTHESIS = OUTER = BLUE
 INNER = VERMILLION
 TANGENT = GREEN
-HIGHLIGHT = ORANGE
-"""The frame of a zoom, and where to look."""
 NO_VALUE = "#C9C9C9"
 """A surface beside one that is coloured by numbers."""
 

@@ -104,8 +104,8 @@ def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str 
     x, y = x0 + 0.03 * (x1 - x0), y0 + 0.03 * (y1 - y0)
     step = length * np.sign(x1 - x0)
     bar = ax.plot([x, x + step], [y, y], color=colour, lw=3, solid_capstyle="butt", zorder=6)[0]
-    bar.set_path_effects(_rim(colour, 6.0))
-    text, style = f"{length:g} mm" if label is None else label, {"va": "bottom", "path_effects": _rim(colour)}
+    bar.set_path_effects(rim(colour, 6.0))
+    text, style = f"{length:g} mm" if label is None else label, {"va": "bottom", "path_effects": rim(colour)}
     ax.text(x, y + 0.02 * (y1 - y0), text, style, color=colour, fontsize=8, ha="left", zorder=6)
 
 
@@ -125,12 +125,25 @@ def name_sides(ax: Axes, right_down: NDArray[np.float64], *, colour: str = BLACK
     for x, y, direction in edges:
         across = "center" if x == 0.5 else "right" if x > 0.5 else "left"
         along = "center" if y == 0.5 else "top" if y > 0.5 else "bottom"
-        style = {"ha": across, "va": along, "color": colour, "path_effects": _rim(colour), "zorder": 6}
+        style = {"ha": across, "va": along, "color": colour, "path_effects": rim(colour), "zorder": 6}
         ax.text(x, y, side_letter(direction), style, transform=ax.transAxes, fontsize=9, weight="bold")
 
 
-def _rim(colour: str, width: float = 2.5) -> list[AbstractPathEffect]:
-    """An edge around lines and letters: black around white ones, white around others."""
+def rim(colour: str, width: float = 2.5) -> list[AbstractPathEffect]:
+    """An edge around lines and letters, to be seen on any ground.
+
+    Parameters
+    ----------
+    colour : str
+        Of the lines.
+    width : float
+        Of lines and edge together, points.
+
+    Returns
+    -------
+    list of AbstractPathEffect
+        Black around white lines, white around others.
+    """
     return [withStroke(linewidth=width, foreground=BLACK if colour == WHITE else WHITE)]
 
 

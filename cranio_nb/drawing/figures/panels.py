@@ -14,13 +14,15 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...volume import Volume
 from ..canvas import round_length
-from ..palette import HIGHLIGHT, MIDDLE_GREY
+from ..palette import BLACK, MIDDLE_GREY
 from ..shading import Picture, Solid, render, view_axes
-from .axes import Axes, Figure, fill_mask, laid_out_figure, name_sides, scale_bar
+from .axes import Axes, Figure, fill_mask, laid_out_figure, name_sides, rim, scale_bar
 
 _SMALL_PT = 9.0
 _BAR_SHARE = 0.3  # most of a picture's width that a scale bar takes
 _RIM_SHARE = 0.12  # left free around a surface, of its larger extent
+ZOOM_FRAME = "frame of a zoom"
+"""Group of the lines that `mark_zoom` draws around what a zoom shows."""
 _GREY_HU = (-700.0, 1300.0)  # black and white of a slice of CT
 
 
@@ -216,9 +218,9 @@ def view_panel(
     rows, cols = picture.depth.shape
     left, top = picture.corner
     right, bottom = left + cols * px_mm, top + rows * px_mm
-    rim = _RIM_SHARE * max(right - left, bottom - top)
+    free = _RIM_SHARE * max(right - left, bottom - top)
     ax.imshow(picture.rgb, extent=(left, right, bottom, top))
-    ax.set(xlim=(left - rim, right + rim), ylim=(bottom + rim, top - rim))
+    ax.set(xlim=(left - free, right + free), ylim=(bottom + free, top - free))
     ax.set_axis_off()
     name_sides(ax, view_axes(towards))
     name_panel(ax, title)
@@ -252,14 +254,15 @@ def mark_zoom(ax: Axes, zoomed: Axes) -> None:
         With its limits, in the same unit; to the right of the other panel, or below it.
     """
     (left, right), (bottom, top) = zoomed.get_xlim(), zoomed.get_ylim()
-    ax.plot([left, right, right, left, left], [bottom, bottom, top, top, bottom], color=HIGHLIGHT, lw=1.4, zorder=5)
-    zoomed.spines[:].set(color=HIGHLIGHT, linewidth=1.4)
+    x, y = [left, right, right, left, left], [bottom, bottom, top, top, bottom]
+    ax.plot(x, y, color=BLACK, lw=1.3, zorder=5, path_effects=rim(BLACK, 3.5), gid=ZOOM_FRAME)
+    zoomed.spines[:].set(color=BLACK, linewidth=1.3)
     # from the frame's side that looks to the zoom to the zoom's side that looks back
     if zoomed.get_position().x0 >= ax.get_position().x1:
         leads = (((right, top), (0, 1)), ((right, bottom), (0, 0)))
     else:
         leads = (((left, bottom), (0, 1)), ((right, bottom), (1, 1)))
-    line = {"arrowstyle": "-", "color": HIGHLIGHT, "lw": 1.0, "shrinkA": 0, "shrinkB": 0}
+    line = {"arrowstyle": "-", "color": BLACK, "lw": 0.8, "shrinkA": 0, "shrinkB": 0, "path_effects": rim(BLACK)}
     for start, end in leads:
         lead = ax.annotate("", end, start, xycoords=zoomed.transAxes, textcoords="data", arrowprops=line)
         lead.set(annotation_clip=False, zorder=5)

@@ -6,7 +6,7 @@ from shapes import ball, cube
 
 from cranio_nb.drawing import figures
 from cranio_nb.drawing.figures import panels
-from cranio_nb.drawing.palette import BLUE, BONE, HIGHLIGHT, PATCH, rgb_of, rgb_shares
+from cranio_nb.drawing.palette import BLUE, BONE, PATCH, rgb_of, rgb_shares
 from cranio_nb.drawing.shading import Solid
 from cranio_nb.volume import Volume
 
@@ -66,7 +66,7 @@ def test_a_zooms_frame_covers_what_the_zoom_shows(layout):
     figures.slice_panel(whole, scan_of())
     figures.slice_panel(zoom, scan_of(), around=[np.array([[20, 30], [30, 50]])], margin_mm=2.0)
     figures.mark_zoom(whole, zoom)
-    x, y = next(line for line in whole.lines if line.get_color() == HIGHLIGHT).get_data()
+    x, y = next(line for line in whole.lines if line.get_gid() == panels.ZOOM_FRAME).get_data()
     assert (x.min(), x.max()) == zoom.get_xlim() == (13.0, 27.0)
     assert (y.max(), y.min()) == zoom.get_ylim() == pytest.approx((26.0, 14.0))
     # each line joins a corner of the frame with a corner of the zoom, and neither crosses the other
