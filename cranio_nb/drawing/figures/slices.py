@@ -80,10 +80,15 @@ def show_areas(
     unit, frame = sliced.unit, sliced.frames[result.plane]
     (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
     rows, cols = (np.arange(low, high, _PIXEL_MM) for low, high in ((top, bottom), (left, right)))
+    half = _PIXEL_MM / 2
+    extent = cols[0] - half, cols[-1] + half, rows[-1] + half, rows[0] - half
     seen = slicing.sample_mask(bone, frame, rows / unit, cols / unit)
-    _fill(ax, seen, rows, cols, BONE, label="bone")
+    areas = [(seen, BONE, 1.0, "bone")]
     if patch is not None:
-        _fill(ax, slicing.sample_mask(patch, frame, rows / unit, cols / unit), rows, cols, PATCH, 0.55, label="patch")
+        areas.append((slicing.sample_mask(patch, frame, rows / unit, cols / unit), PATCH, 0.55, "patch"))
+    for mask, colour, alpha, name in areas:
+        fill_mask(ax, mask, extent, colour, alpha=alpha)
+        ax.fill([], [], color=colour, alpha=alpha, label=name)
     return seen, rows, cols
 
 
@@ -125,16 +130,6 @@ def slice_figure(
     draw_slice(ax, sliced, result, bone, patch, skeleton=skeleton)
     name_sides(ax, sliced.frames[result.plane][[2, 1]])
     return figure
-
-
-def _fill(
-    ax: Axes, mask: NDArray, rows: NDArray, cols: NDArray, colour: str, alpha: float = 1.0, *, label: str
-) -> None:
-    """Fill a mask whose pixels lie at places in mm."""
-    half = _PIXEL_MM / 2
-    extent = cols[0] - half, cols[-1] + half, rows[-1] + half, rows[0] - half
-    fill_mask(ax, mask, extent, colour, alpha=alpha)
-    ax.fill([], [], color=colour, alpha=alpha, label=label)
 
 
 def _starts(result: SliceResult) -> NDArray:
