@@ -128,7 +128,7 @@ def figure_10(skull: Mesh, rival: Mesh, prosthesis: Mesh, truth: Mesh, towards: 
         solids = [bone, Solid(rival, rgb_shares(PROSTHESIS))]
         figures.view_panel(panels[name], solids, side, px_mm=_HEAD_PX_MM, title=title)
     missing = render([Solid(truth, rgb_shares(TRUTH))], edge_on, px_mm=_PATCH_PX_MM)
-    for name, mesh, title in (("c", rival, "(a) You, edge on"), ("b", prosthesis, "(b) ours, edge on")):
+    for name, mesh, title in (("c", rival, "(a) You, edge on"), ("b", prosthesis, "(b) paper, edge on")):
         solids = [Solid(mesh, rgb_shares(PROSTHESIS))]
         figures.view_panel(panels[name], solids, edge_on, px_mm=_PATCH_PX_MM, title=title)
         _draw_silhouette(panels[name], missing)
