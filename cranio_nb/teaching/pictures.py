@@ -1,6 +1,7 @@
 """Pictures of the lessons: slices, curves and meshes on matplotlib axes, and pictures that carry a description.
 
-Frames: slices (row, col) px of one plane of the scan, drawn in mm; meshes in world mm (LPS).
+Frames: slices (row, col) px of one plane of the scan, drawn in mm; meshes in world mm (LPS). Pictures of a head have
+the letters of the patient's sides and a scale bar; what is drawn by `show_mask` and `show_errors` is named by `key`.
 """
 
 from __future__ import annotations
@@ -11,13 +12,27 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..drawing import figures
+from ..drawing import figures, paper_figures
 from ..drawing.coarse_skull import skull_surface
 from ..drawing.described import described
-from ..drawing.palette import BLACK, BLUE, BONE, GREEN, ORANGE, PATCH, PURPLE, SKULL, VERMILLION, rgb_shares
+from ..drawing.palette import (
+    BLACK,
+    BLUE,
+    BONE,
+    GREEN,
+    MIDDLE_GREY,
+    ORANGE,
+    PATCH,
+    PURPLE,
+    SKULL,
+    TRUTH,
+    VERMILLION,
+    rgb_shares,
+)
 from ..drawing.scene3d import show_meshes as show_scene
-from ..drawing.shading import Solid, render
+from ..drawing.shading import Solid
 from ..mesh import Mesh
+from ..volume import Volume
 
 if TYPE_CHECKING:
     from ..drawing.figures import Axes, Figure
@@ -31,6 +46,9 @@ __all__ = [
     "MASKS",
     "SKULL",
     "axes",
+    "key",
+    "name_sides",
+    "paper_figures",
     "picture",
     "plot_lines",
     "scene",
@@ -41,14 +59,28 @@ __all__ = [
     "show_meshes",
     "show_points",
     "skull_surface",
-    "zoom",
+    "slices",
 ]
 
-LINES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"), (BLACK, "-"))
+LINES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"), (BLACK, "-"), (MIDDLE_GREY, "--"))
 """Colour and style of the first, second, ... curve of a picture: told apart without colour as well."""
 
-MASKS = {"bone": BONE, "patch": PATCH, "missing": VERMILLION, "extra": BLUE, "removed": ORANGE}
-"""Colours of `show_mask` by what a mask means; "#RRGGBB" does as well."""
+MASKS = {
+    "bone": (BONE, "bone"),
+    "patch": (PATCH, "patch"),
+    "right": (PATCH, "patch on missing bone"),
+    "missing": (TRUTH, "missing bone, no patch"),
+    "extra": (BLUE, "patch, no missing bone"),
+    "filled": (GREEN, "holes filled"),
+    "dropped": (ORANGE, "dropped"),
+}
+"""Colour of a mask by what it means, and its name in the key."""
+
+key = figures.key
+"""Say below a figure what its colours and lines mean."""
+
+name_sides = figures.name_sides
+"""Write the letters of the patient's sides at the edges of a picture."""
 
 scene = show_scene
 """Meshes to turn, each in a colour or coloured by numbers at its vertices; see `scene3d.show_meshes`."""
@@ -86,12 +118,56 @@ def axes(n: int = 1, *, height: float = 3.4, width: float = 9.0) -> tuple[Figure
     return figure, list(figure.subplots(1, n, squeeze=False)[0])
 
 
+def slices(
+    n: int,
+    scan: Volume,
+    *,
+    around: Iterable[ArrayLike] = (),
+    margin_mm: float = 15.0,
+    height: float = 3.4,
+    width: float = 9.0,
+) -> tuple[Figure, list[Axes]]:
+    """A figure with axes side by side for slices of a head: in mm, with the patient's sides and a scale bar.
+
+    Parameters
+    ----------
+    n : int
+        Number of axes.
+    scan : Volume
+        What the slices are of: its geometry counts.
+    around : iterable of array_like, shape (n, 2)
+        (row, col) px: only what lies near them is shown; without them the whole slice.
+    margin_mm : float
+        Shown around them.
+    height, width : float
+        Of the whole figure, inches.
+
+    Returns
+    -------
+    figure : Figure
+    axes : list of Axes
+        From left to right.
+
+    Examples
+    --------
+    >>> figure, (ax,) = slices(1, Volume(np.zeros((4, 60, 40), bool), np.diag([3.0, 0.5, 0.5, 1.0])))
+    >>> [round(limit, 2) for limit in ax.get_xlim()], [text.get_text() for text in ax.texts]
+    ([-0.25, 19.75], ['S', 'I', 'A', 'P', '5 mm'])
+    """
+    figure, every = axes(n, height=height, width=width)
+    seen = list(around)
+    for ax in every:
+        figures.slice_panel(ax, scan, around=seen, margin_mm=margin_mm)
+    return figure, every
+
+
 def show_hu(ax: Axes, hu: NDArray, *, px: float, centre: float = 300.0, width: float = 2000.0, title: str = "") -> None:
-    """Draw a slice of HU in greys; axes in mm.
+    """Draw a slice of HU in greys.
 
     Parameters
     ----------
     ax : Axes
+        Of `slices`, or any in mm.
     hu : ndarray, shape (R, C)
     px : float
         Size of a pixel, mm.
@@ -104,43 +180,43 @@ def show_hu(ax: Axes, hu: NDArray, *, px: float, centre: float = 300.0, width: f
     _label(ax, title)
 
 
-def show_mask(ax: Axes, mask: NDArray[np.bool_], *, px: float, colour: str = "bone", title: str = "") -> None:
-    """Draw a mask in one colour over what is there; axes in mm.
+def show_mask(ax: Axes, mask: NDArray[np.bool_], *, px: float, meaning: str = "bone", title: str = "") -> None:
+    """Draw a mask in the colour of its meaning over what is there.
 
     Parameters
     ----------
     ax : Axes
+        Of `slices`, or any in mm.
     mask : ndarray of bool, shape (R, C)
     px : float
         Size of a pixel, mm.
-    colour : str
-        A key of `MASKS`, or "#RRGGBB".
+    meaning : str
+        A key of `MASKS`.
     title : str
     """
-    rgba = np.zeros((*mask.shape, 4))
-    rgba[mask] = [*rgb_shares(MASKS.get(colour, colour)), 1.0]
-    ax.imshow(rgba, extent=_extent(mask.shape, px), interpolation="nearest")
+    colour, name = MASKS[meaning]
+    figures.fill_mask(ax, mask, _extent(mask.shape, px), colour)
+    ax.fill([], [], color=colour, label=name)
     _label(ax, title)
 
 
 def show_errors(
     ax: Axes, patch: NDArray[np.bool_], missing: NDArray[np.bool_], bone: NDArray[np.bool_], *, px: float, title: str
 ) -> None:
-    """Draw a patch over the bone that is missing: agreed light blue, missed red, too much dark blue.
+    """Draw a patch over the bone that is missing: what is right, what is left open, what is too much.
 
     Parameters
     ----------
     ax : Axes
+        Of `slices`.
     patch, missing, bone : ndarray of bool, shape (R, C)
     px : float
         Size of a pixel, mm.
     title : str
     """
-    show_mask(ax, bone, px=px)
-    show_mask(ax, missing & ~patch, px=px, colour="missing")
-    show_mask(ax, patch & ~missing, px=px, colour="extra")
-    show_mask(ax, patch & missing, px=px, colour="patch", title=title)
-    zoom(ax, [np.argwhere(missing | patch)], px=px, margin=8)
+    parts = {"bone": bone, "right": patch & missing, "missing": missing & ~patch, "extra": patch & ~missing}
+    for meaning, mask in parts.items():
+        show_mask(ax, mask, px=px, meaning=meaning, title=title)
 
 
 def show_points(ax: Axes, points: ArrayLike, *, px: float, colour: str, marker: str = ".", label: str = "") -> None:
@@ -161,7 +237,9 @@ def show_points(ax: Axes, points: ArrayLike, *, px: float, colour: str, marker: 
         Name in the legend.
     """
     row, col = np.asarray(points, float).reshape(-1, 2).T * px
-    ax.plot(col, row, ls="none", marker=marker, ms=3 if marker == "." else 6, color=colour, label=label or None)
+    ax.plot(col, row, ls="none", marker=marker, ms=3 if marker == "." else 6, color=colour)
+    if label:  # large enough to be seen in the key
+        ax.plot([], [], ls="none", marker=marker, ms=9 if marker == "." else 6, color=colour, label=label)
 
 
 def show_curve(ax: Axes, points: ArrayLike, *, px: float, line: int = 0, label: str = "") -> None:
@@ -177,25 +255,6 @@ def show_curve(ax: Axes, points: ArrayLike, *, px: float, line: int = 0, label: 
     row, col = np.asarray(points, float).reshape(-1, 2).T * px
     colour, style = LINES[line]
     ax.plot(col, row, ls=style, lw=1.8, color=colour, label=label or None)
-
-
-def zoom(ax: Axes, points: Iterable[ArrayLike], *, px: float, margin: float = 15.0) -> None:
-    """Show only what lies near some points; call it last.
-
-    Parameters
-    ----------
-    ax : Axes
-    points : iterable of array_like, shape (n, 2)
-        (row, col) px.
-    px : float
-        Size of a pixel, mm.
-    margin : float
-        Shown around the points, mm.
-    """
-    # rows run down: the lower limit of y is the larger one
-    every = np.concatenate([np.asarray(p, float).reshape(-1, 2) for p in points]) * px
-    (top, left), (bottom, right) = every.min(axis=0) - margin, every.max(axis=0) + margin
-    ax.set(xlim=(left, right), ylim=(bottom, top))
 
 
 def plot_lines(ax: Axes, x: ArrayLike, ys: dict[str, ArrayLike], *, xlabel: str, ylabel: str, title: str = "") -> None:
@@ -225,7 +284,7 @@ def show_meshes(
     px: float = 1.0,
     shaded: bool = True,
 ) -> None:
-    """Draw meshes, seen from a direction.
+    """Draw meshes, seen from a direction, with the patient's sides and a scale bar.
 
     Parameters
     ----------
@@ -241,9 +300,8 @@ def show_meshes(
         Whether light falls on them; False for colours that mean numbers.
     """
     solids = [Solid(mesh, rgb_shares(colour) if isinstance(colour, str) else colour) for mesh, colour in parts]
-    ax.imshow(render(solids, towards, px_mm=px, shaded=shaded).rgb)
-    ax.set_title(title, fontsize=9)
-    ax.set_axis_off()
+    figures.view_panel(ax, solids, towards, px_mm=px, shaded=shaded, title=title)
+    figures.one_scale([ax])
 
 
 def _extent(shape: tuple[int, ...], px: float) -> tuple[float, float, float, float]:
@@ -253,4 +311,5 @@ def _extent(shape: tuple[int, ...], px: float) -> tuple[float, float, float, flo
 
 
 def _label(ax: Axes, title: str) -> None:
-    ax.set(xlabel="mm", ylabel="mm", title=title, aspect="equal")
+    if title:
+        figures.name_panel(ax, title)

@@ -131,10 +131,9 @@ wrong.imshow(middle, aspect=1, **look)
 right.imshow(middle, aspect=ratio, **look)
 wrong.set(title="voxels drawn as squares", xlabel="row", ylabel="plane")
 right.set(title="in true proportion", xlabel="row", ylabel="plane")
-sides = {"A": (0.03, 0.5), "P": (0.97, 0.5), "S": (0.5, 0.92), "I": (0.5, 0.06)}
-for letter, place in sides.items():  # of the patient
-    for ax in (wrong, right):
-        ax.text(*place, letter, color="w", ha="center", va="center", transform=ax.transAxes)
+along_planes, along_rows, _ = ct.edges
+for ax in (wrong, right):
+    pictures.name_sides(ax, np.array([along_rows, -along_planes]))  # to the right, and down
 alt = "The same side view of a head twice: squashed to a third of its height, and true."
 pictures.picture(fig, alt, f"one plane is as high as {ratio:.2f} rows")
 
@@ -235,12 +234,12 @@ def window(hu, centre, width):
 check.exercise("1.1", window)
 
 # %% tags=["expected"]
-fig, panels = pictures.axes(3, height=3.6)
+fig, panels = pictures.slices(3, case.ct, height=3.6)
 windows = [("wide", 300, 2000), ("bone", 800, 800), ("brain", 40, 80)]
 for ax, (name, centre, width) in zip(panels, windows, strict=True):
     grey = window(case.ct.voxels[38].astype(float), centre, width)
-    ax.imshow(grey, cmap="gray", vmin=0, vmax=255)
-    ax.set(title=f"{name}: {centre} / {width} HU", xticks=[], yticks=[])
+    title = f"{name}: {centre} / {width} HU"
+    pictures.show_hu(ax, grey, px=case.px, centre=127.5, width=255, title=title)
 alt = (
     "One slice in three windows: skull and skin; bone alone; brain grey and noisy, bone white."
 )

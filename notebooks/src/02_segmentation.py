@@ -145,12 +145,11 @@ added = filled[plane] & ~raw[plane]
 front = np.argwhere(raw[plane])[:1]  # the first bone pixel from the top
 
 # %% tags=["nbval-check-output"]
-fig, (left, right) = pictures.axes(2, height=4.2)
+fig, (left, right) = pictures.slices(2, ct, around=[front], margin_mm=40 / 2, height=4.6)
 pictures.show_hu(left, ct.voxels[plane], px=px, title="CT")
 pictures.show_mask(right, raw[plane], px=px)
-pictures.show_mask(right, added, px=px, colour="#D55E00", title="700 HU; filled: orange-red")
-for ax in (left, right):
-    pictures.zoom(ax, [front], px=px, margin=40 / 2)
+pictures.show_mask(right, added, px=px, meaning="filled", title="above 700 HU")
+pictures.key(fig)
 alt = "Left: the front of a skull in CT. Right: its bone above 700 HU, many small holes filled."
 pictures.picture(fig, alt, f"{added.sum()} pixels filled in the whole of plane {plane}")
 
@@ -188,9 +187,11 @@ lying = classroom.synthetic("class", couch=True)
 level = np.flatnonzero(lying.truth.voxels.any(axis=(1, 2)))[0] - 4
 bright = segmentation.apply_threshold(lying.ct.voxels, 400)
 kept = segmentation.drop_artefacts(bright)
-fig, (ax,) = pictures.axes(height=4.2, width=5.0)
-pictures.show_mask(ax, bright[level], px=lying.px, colour="#D55E00")
-pictures.show_mask(ax, kept[level], px=lying.px, title="skull kept, couch dropped (orange-red)")
+fig, (ax,) = pictures.slices(1, lying.ct, height=4.6, width=5.0)
+couch = bright[level] & ~kept[level]
+pictures.show_mask(ax, couch, px=lying.px, meaning="dropped")
+pictures.show_mask(ax, kept[level], px=lying.px, title="skull kept, couch dropped")
+pictures.key(fig)
 alt = "A ring of bone, and behind it a curved plate in another colour that is dropped."
 parts = ndimage.label(bright)[1]
 pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} after")
@@ -280,11 +281,11 @@ def fill_small_holes(mask, max_pixels):
 check.exercise("2.2", fill_small_holes)
 
 # %% tags=["expected"]
-fig, (ax,) = pictures.axes(height=4.0, width=5.0)
+fig, (ax,) = pictures.slices(1, ct, around=[front], margin_mm=20, height=4.4, width=5.0)
 mine = fill_small_holes(raw[plane], 70)
-pictures.show_mask(ax, mine, px=px, colour="#D55E00")
-pictures.show_mask(ax, raw[plane], px=px, title="your filled holes in orange-red")
-pictures.zoom(ax, [front], px=px, margin=20)
+pictures.show_mask(ax, mine & ~raw[plane], px=px, meaning="filled")
+pictures.show_mask(ax, raw[plane], px=px, title="your filled holes")
+pictures.key(fig)
 alt = "The front of a skull; small spots in its thickness are filled, the brain's place is not."
 pictures.picture(fig, alt, f"{(mine & ~raw[plane]).sum()} pixels filled")
 

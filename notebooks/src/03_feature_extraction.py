@@ -96,10 +96,11 @@ bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) 
 # %% tags=["nbval-check-output"]
 raw, kept = classroom.skeleton(bar), feature_extraction.extract_features(bar).skeleton[0]
 fig, (ax,) = pictures.axes(height=3.6, width=6.0)
-pictures.show_mask(ax, bar, px=px, title="one end of a bar, cut squarely")
-pictures.show_points(ax, raw, px=px, colour="#D55E00", marker="s", label="raw skeleton")
-pictures.show_curve(ax, kept, px=px, line=0, label="path kept")
-pictures.zoom(ax, [kept[-8:]], px=px, margin=9)
+pictures.show_mask(ax, bar, px=1, title="one end of a bar, cut squarely")
+pictures.show_points(ax, raw, px=1, colour="#E69F00", marker="s", label="raw skeleton")
+pictures.show_curve(ax, kept, px=1, line=4, label="path kept")
+(row, col), half = kept[-1], 13
+ax.set(xlim=(col - half, col + half), ylim=(row + half, row - half), xlabel="px", ylabel="px")
 ax.legend(loc="upper right", fontsize=8)
 alt = "The raw skeleton forks into both corners of the cut; the path kept ends at the fork."
 pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} px")
@@ -284,8 +285,11 @@ def boundary(bone):
 check.exercise("3.1", boundary)
 
 # %% tags=["expected"]
-fig, (ax,) = pictures.axes(height=4.0)
-pictures.show_mask(ax, boundary(mask), px=px, colour="#0072B2", title="boundary of the slice")
+fig, (ax,) = pictures.slices(1, bone, height=4.2)
+pictures.show_points(
+    ax, np.argwhere(boundary(mask)), px=px, colour=pictures.BLACK, label="yours"
+)
+pictures.key(fig)
 alt = "A thin closed outline: the boundary of a ring of bone that is open at one side."
 pictures.picture(fig, alt, f"{boundary(mask).sum()} boundary pixels")
 

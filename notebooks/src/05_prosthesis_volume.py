@@ -74,15 +74,14 @@ patch = prosthesis_volume.fill_gap(outer, inner, bone.voxels[plane])
 print(f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without the bone")
 
 # %% tags=["nbval-check-output"]
-fig, (left, right) = pictures.axes(2, height=4.6)
-pictures.show_mask(left, region, px=px, colour="patch", title="between the curves")
+fig, (left, right) = pictures.slices(2, bone, around=[outer, inner], height=4.6, width=7.0)
+pictures.show_mask(left, region, px=px, meaning="patch", title="between the curves")
 pictures.show_mask(right, bone.voxels[plane], px=px)
-pictures.show_mask(right, patch, px=px, colour="patch", title="minus bone: the patch")
+pictures.show_mask(right, patch, px=px, meaning="patch", title="minus bone: the patch")
 for ax in (left, right):
     pictures.show_curve(ax, outer, px=px, line=0, label="outer")
     pictures.show_curve(ax, inner, px=px, line=1, label="inner")
-    pictures.zoom(ax, [outer, inner], px=px)
-right.legend(fontsize=8)
+pictures.key(fig)
 alt = "Two curves cross a gap in the bone; the region between them, with and without bone."
 pictures.picture(fig, alt, f"patch of {patch.sum() * px**2:.0f} mm2")
 
@@ -113,21 +112,13 @@ found = prosthesis_volume.fill_partial_loss(dent.voxels[at], min_area_px=20)
 print(f"{(hull & ~dent.voxels[at]).sum()} px in the hull but not bone; {found.sum()} px kept")
 
 # %% tags=["nbval-check-output"]
-masks = {
-    "(b) bone": dent.voxels[at],
-    "(c) hull - bone": hull & ~dent.voxels[at],
-    "(d) patch": found,
-}
-fig, panels = pictures.axes(4, height=3.0, width=10.0)
-pictures.show_hu(panels[0], dented.ct.voxels[at], px=px, title="(a) CT")
-for ax, (title, shown) in zip(panels[1:], masks.items(), strict=True):
-    pictures.show_mask(ax, shown, px=px, title=title)
-alt = "Four views of one slice: CT, ring of bone, hull minus bone, and the dent that is kept."
+fig = pictures.paper_figures.figure_6(dented.ct, dent, at, found)
+alt = "Four views of one slice, each with a zoom: CT, bone, hull minus bone, the patch kept."
 pictures.picture(fig, alt, f"patch {found.sum()} px, missing {lost[at].sum()} px")
 
 # %% [markdown]
-# These are the four steps of the paper's Figure 6. A hull is straight where the bone was round, so not all of the
-# missing pixels come back.
+# These are the four steps of the paper's Figure 6, with a zoom below each. A hull is straight where the bone was
+# round, so not all of the missing pixels come back.
 #
 # **Question.** When does the convex hull give the wrong answer?
 #
@@ -418,13 +409,13 @@ def partial_loss(bone, min_pixels):
 check.exercise("5.3", partial_loss)
 
 # %% tags=["expected"]
-fig, (ax,) = pictures.axes(height=4.2, width=5.0)
+mine = partial_loss(dent.voxels[at], 20)
+fig, (ax,) = pictures.slices(1, dent, height=4.6, width=5.0)
 pictures.show_mask(ax, dent.voxels[at], px=px)
-pictures.show_mask(
-    ax, partial_loss(dent.voxels[at], 20), px=px, colour="patch", title="your patch"
-)
+pictures.show_mask(ax, mine, px=px, meaning="patch", title="your patch")
+pictures.key(fig)
 alt = "A closed ring of bone with a dent in its outside; the dent is filled in blue."
-pictures.picture(fig, alt, f"{partial_loss(dent.voxels[at], 20).sum()} px")
+pictures.picture(fig, alt, f"{mine.sum()} px")
 
 # %% [markdown]
 # ## Summary

@@ -272,17 +272,18 @@ print(f"paper, You et al. {you.mean:8.2f} {you.max:5.2f}")
 print(f"paper, its method {out.mean:8.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}")
 
 # %% [markdown]
-# One slice of the hole, with the patch of each. Light blue is right, orange-red is bone that was missed, dark blue is
-# too much.
+# One slice of the hole, with the patch of each: light blue where it fills what is missing, purple where it leaves bone
+# missing, dark blue where no bone is missing.
 
 # %% tags=["nbval-check-output"]
 at = sum(openings[0].planes) // 2
-fig, panels = pictures.axes(4, height=4.4)
 lost = case.truth.voxels[at]
+fig, panels = pictures.slices(4, bone, around=[np.argwhere(lost)], height=4.8)
 for ax, (name, made) in zip(panels, rivals.items(), strict=True):
     patch = made.patch.voxels[at]
     pictures.show_errors(ax, patch, lost, bone.voxels[at], px=px, title=name)
-alt = "One slice, four methods: agreed light blue, missed bone orange, too much dark blue."
+pictures.key(fig)
+alt = "One slice, four methods: agreed light blue, missed bone purple, too much dark blue."
 pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
 
 # %% [markdown]

@@ -72,12 +72,15 @@ diagrams.plate_map(bone, vault)
 # %% tags=["nbval-check-output"]
 fig, panels = pictures.axes(2, height=3.8)
 half = (len(vault.outer) // 2 + 0.5) * vault.step_mm
-maps = {"outer radius (mm)": vault.outer, "thickness (mm)": vault.outer - vault.inner}
+maps = {"outer radius": vault.outer, "thickness": vault.outer - vault.inner}
 for ax, (name, values) in zip(panels, maps.items(), strict=True):
     beside = np.where(vault.hole, np.nan, values)
-    shown = ax.imshow(beside, cmap="cividis", origin="lower", extent=(-half, half, -half, half))
-    fig.colorbar(shown, ax=ax)
+    # rays along the edge of the bone would stretch the scale; seen from outside, the top up
+    look = {"cmap": "cividis", "vmin": np.nanpercentile(beside, 2), "origin": "lower"}
+    shown = ax.imshow(beside, extent=(-half, half, -half, half), **look)
+    fig.colorbar(shown, ax=ax, label="mm", extend="min")
     ax.set(title=name, xlabel="front to back (mm)", ylabel="upwards (mm)")
+    pictures.name_sides(ax, vault.grid.axes[:2] * [[1], [-1]])
 alt = "Two maps of the vault around the hole, which is white: outer radius, and thickness."
 n = len(vault.outer)
 pictures.picture(fig, alt, f"{n} x {n} rays, {vault.step_mm:.2f} mm apart")
@@ -135,11 +138,12 @@ for order, length in ((2, 2), (2, 10), (3, 2), (3, 10)):
 # %% tags=["nbval-check-output"]
 fig, panels = pictures.axes(4, height=2.8, width=10.0)
 for ax, (name, off), (colour, _) in zip(panels, bridges.items(), pictures.LINES, strict=False):
-    ax.axvspan(-25, 25, color=pictures.BONE, alpha=0.4)
+    ax.axvspan(-25, 25, color=pictures.BONE, alpha=0.4, label="gap")
     ax.plot(x, off[:, :12], color=colour, lw=0.6, alpha=0.6)
-    ax.plot(x, off.mean(axis=1), color=pictures.BLACK, lw=1.6)
+    ax.plot(x, off.mean(axis=1), color=pictures.BLACK, lw=1.6, label="mean of 200 draws")
     ax.set(title=name, xlabel="along the bow (mm)", ylim=(-4, 4))
 panels[0].set_ylabel("above the truth (mm)")
+pictures.key(fig)
 alt = (
     "Four bridges, twelve draws of the noise each: order 3 with a = 2 mm scatters most by far."
 )
@@ -399,17 +403,18 @@ out, inn, _ = paper_tables.PAPER_DISTANCES.values()
 print(f"paper        {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}")
 
 # %% [markdown]
-# One slice of the large hole, with the patch of each. Light blue is right, orange-red is bone that was missed, dark
-# blue is too much.
+# One slice of the large hole, with the patch of each: light blue where it fills what is missing, purple where it leaves
+# bone missing, dark blue where no bone is missing.
 
 # %% tags=["nbval-check-output"]
 at = sum(largest[0].planes) // 2
-fig, panels = pictures.axes(3, height=4.2)
 lost, px = wide.truth.voxels[at], wide.px
+fig, panels = pictures.slices(3, skull, around=[np.argwhere(lost)], height=4.6)
 for ax, (name, one) in zip(panels, over.items(), strict=True):
     patch = one.patch.voxels[at]
     pictures.show_errors(ax, patch, lost, skull.voxels[at], px=px, title=name)
-alt = "One slice, three methods: agreed light blue, missed bone orange, too much dark blue."
+pictures.key(fig)
+alt = "One slice, three methods: agreed light blue, missed bone purple, too much dark blue."
 pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
 
 # %% [markdown]
@@ -475,8 +480,8 @@ check.exercise("9.2", bridge)
 fig, (ax,) = pictures.axes(height=3.0)
 parabola = 75 - x**2 / 150
 lines = {f"order {n}": bridge(parabola, known, n, 1e4) - parabola for n in (2, 3)}
+ax.axvspan(-25, 25, color=pictures.BONE, alpha=0.4, label="gap")
 pictures.plot_lines(ax, x, lines, xlabel="mm", ylabel="above the truth (mm)")
-ax.axvspan(-25, 25, color=pictures.BONE, alpha=0.4)
 alt = "Bridges minus a true parabola, the gap grey: order 2 is off in it, order 3 nowhere."
 pictures.picture(fig, alt, f"order 3: {np.abs(lines['order 3']).max():.3f} mm off at most")
 

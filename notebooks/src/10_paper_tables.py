@@ -20,13 +20,12 @@
 #
 # **Time:** 45 minutes (text 20, questions 15, exercises 10). **You need:** lessons 04 and 07.
 #
-# **From the paper:** Tables 1, 2 and 3, and all ten figures. A map at the end says where each of them is.
+# **From the paper:** Tables 1, 2 and 3, and all ten figures. A map at the end says where each of them is explained.
 
 # %%
 import numpy as np
 
 import cranio_nb as cn
-from cranio_nb.drawing import figures
 from cranio_nb.evaluation import against_truth, mesh_distances, paper_tables
 from cranio_nb.teaching import check, classroom, pictures, widgets
 
@@ -280,49 +279,78 @@ for wide_mm, high_mm in ((0.45, 0.45), (0.9, 2.5), (0.45, 2.5)):
 #
 # </details>
 #
-# ## Figure 4: the frame of a balloon
+# ## The figures
 #
-# The middle slice of the paper's preset in the chord frame: ends on the axis, the cubic of eq. (3) as the start, the
-# tangents at both ends.
+# All ten, in the paper's order and with its letters (a), (b), ..., drawn by `paper_figures` from the designs above, with
+# the paper's preset where the paper shows its own method. One colour has one meaning throughout: sand is bone, light
+# blue the patch, dark blue the outer side and the finished prosthesis, orange-red the inner side, purple the truth. What
+# a frame holds is shown larger beside it or below.
+#
+# ## Figures 1 to 3: one slice
+#
+# The middle one of the slices that the preset bridges. The paper: "(a) Slice of the defective skull. (b) Bone
+# segmentation." (Lessons 01 and 02.)
 
 # %%
 sliced = paper.working[0]
 bridged = [s for s in sliced.slices if s.status == "balloon"]
 middle = bridged[len(bridged) // 2]
-frame = cn.curves.ChordFrame.of(middle.ends[0], bone.to_voxel(openings[0].head_centre)[1:])
-ends = frame.end_angles(middle.ends[0])
+plane = middle.plane + first
 
 # %% tags=["nbval-check-output"]
-fig, (ax,) = pictures.axes(height=1.9, width=8.0)
-for curve, line, name in ((middle.start[0], "--", "start"), (middle.curves[0], "-", "at rest")):
-    ax.plot(*(px * frame.to_chord(curve)).T, line, color=pictures.BLUE, label=name)
-for x, angle, along in zip((0, px * frame.length), ends, (9, -9), strict=True):
-    ax.plot([x, x + along], [0, along * np.tan(angle)], color=pictures.GREEN, lw=2)
-ax.set(xlabel="x (mm)", ylabel="out (mm)", aspect="equal")
-fig.legend(loc="outside right center", fontsize=8)
-alt = "An arch over the x axis from 0 to L; short straight lines are the tangents at its ends."
+fig = pictures.paper_figures.figure_1(case.ct, bone, plane)
+alt = "A slice of CT: a bright ring of bone, open at the patient's left; beside it the bone."
+pictures.picture(fig, alt, f"slice {plane}: {bone.voxels[plane].sum()} pixels of bone")
+
+# %% [markdown]
+# "Bone boundary and skeleton." The path kept stops short of the end (lesson 03, section 2).
+
+# %% tags=["nbval-check-output"]
+fig = pictures.paper_figures.figure_2(bone, plane)
+alt = "The ring of bone with its boundary pixels and its skeleton; one end of it larger."
+pictures.picture(fig, alt, f"slice {plane}")
+
+# %% [markdown]
+# "Inner and outer boundaries of the bone plus the tangent lines." The paper's red and green are our orange-red and dark
+# blue. The balloons begin at the rings, `skip` inside the bone (lesson 03, section 3).
+
+# %% tags=["nbval-check-output"]
+fig = pictures.paper_figures.figure_3(bone, plane, middle.ends)
+alt = "Both boundaries in colour, with straight tangent lines at both ends of the gap, zoomed."
+lengths = [np.linalg.norm(np.diff(one.points, axis=0)) * px for one in middle.ends]
+pictures.picture(fig, alt, "L = {:.0f} mm outside, {:.0f} mm inside".format(*lengths))
+
+# %% [markdown]
+# ## Figure 4: the frame of a balloon
+#
+# "Coordinate system used to setup the outer balloon": both ends on the x axis, one in the origin, the other at x = L.
+# theta1 is counted from the x axis as theta0 is, so it is obtuse. The dashed line is the cubic of eq. (3), the full one
+# the balloon at rest.
+
+# %% tags=["nbval-check-output"]
+fig = pictures.paper_figures.figure_4(sliced, middle, bone)
+alt = "The gap lying flat: chord of length L on the x axis, an arch over it, its end angles."
+angles = middle.inflation.theta0_deg[0], middle.inflation.theta1_deg[0]
 line = "L = {:.0f} mm, angles {:.0f} and {:.0f} degrees"
-pictures.picture(fig, alt, line.format(px * frame.length, *np.degrees(ends)))
+pictures.picture(fig, alt, line.format(px * middle.inflation.length[0], *angles))
 
 # %% [markdown]
 # ## Figure 5: one slice, both ways
 #
-# First a plane of the scan with the paper's constant. Then the middle page of the default's first fan: another plane,
-# so the two gaps are not of the same length. In both, blue belongs to the outer boundary and orange-red to the inner
-# one: dots are the boundary, a dashed line is the start curve, a full line the balloon at rest. Rings are the ends of
-# the gap, green arrows the tangents there; light blue is the patch.
+# "(a) Balloon results. (b) Prosthesis patch (in blue)." First the same plane with the paper's constant. Then the middle
+# page of the default's first fan: another plane, so the two gaps are not of the same length.
 
 # %% tags=["nbval-check-output"]
-figure = figures.slice_figure(sliced, middle, bone, paper.patch, skeleton=True)
-alt = "The paper's preset: both balloons cross the gap flatter than the skull; patch in blue."
-pictures.picture(figure, alt, "steps " + ", ".join(str(n) for n in middle.inflation.n_iter))
+fig = pictures.paper_figures.figure_5(sliced, middle, bone, paper.patch)
+alt = "The paper's preset: both balloons cross the gap flatter than the skull; the patch."
+pictures.picture(fig, alt, "steps " + ", ".join(str(n) for n in middle.inflation.n_iter))
 
 # %% tags=["nbval-check-output"]
 fan = ours.working[0]
 page = fan.slices[len(fan.slices) // 2]
-figure = figures.slice_figure(fan, page, bone, ours.patch)
+fig = pictures.paper_figures.figure_5(fan, page, bone, ours.patch)
 alt = "The default: both curves go on as the bone does; the patch is as thick as the bone."
-pictures.picture(figure, alt, "steps " + ", ".join(str(n) for n in page.inflation.n_iter))
+pictures.picture(fig, alt, "steps " + ", ".join(str(n) for n in page.inflation.n_iter))
 
 # %% [markdown]
 # Look at the dashed lines of the first picture: the *start* continues the skull better than the balloon that the
@@ -343,33 +371,43 @@ for i, side in enumerate(("outer", "inner")):
 # And why "steps 1, 1" for the default? Its start is a spiral that follows from both ends, with the pressure that
 # holds just this spiral. So the balloon starts at rest, and stops after one look.
 #
-# Figure 6, partial loss, stands in lesson 05, section 2.
+# ## Figure 6: partial loss
 #
+# "(a) Original slice with defective region highlighted. (b) Segmented bone. (c) Difference between the convex hull and
+# the bone region. (d) Prosthesis patch." Of the slices that the preset fills by the hull we show the one with the
+# largest patch. Of hull minus bone the largest region is dropped, which is the inside of the head, and the islands
+# around it; what is left is the patch (lesson 05, section 2).
+
+# %% tags=["nbval-check-output"]
+by_hull = [s.plane + first for s in sliced.slices if s.status == "hull"]
+at = max(by_hull, key=lambda p: paper.patch.voxels[p].sum(), default=plane)
+kept, lost = paper.patch.voxels[at], case.truth.voxels
+fig = pictures.paper_figures.figure_6(case.ct, bone, at, kept)
+alt = "One slice four times, each with a zoom on the dent: CT, bone, hull minus bone, patch."
+pictures.picture(fig, alt, f"slice {at}: patch {kept.sum()} px, missing {lost[at].sum()} px")
+
+# %% [markdown]
 # ## Figure 7: good slices and a bad one
 #
-# The paper shows two good patches, one whose thickness "is not suitable", and a zoom into it. We take the preset with
+# "(a)-(c) Prosthesis patches obtained with our method. (d) Zoom in the patch of last figure." Two are good, of the
+# third the thickness "is not suitable". We take the preset with
 # `k` from the ends, so that only the ends are to blame, and order its slices by their Dice coefficient: the best, the
 # middle one, the worst.
 
 # %%
-made, lost = designs["its k from ends"], case.truth.voxels
-planes = [s.plane + first for s in made.working[0].slices if s.status == "balloon"]
+made = designs["its k from ends"]
+results = [s for s in made.working[0].slices if s.status == "balloon"]
+planes = [s.plane + first for s in results]
 pairs = [(made.patch.voxels[p], lost[p]) for p in planes]
 dice = [2 * (a & b).sum() / (a.sum() + b.sum()) for a, b in pairs]
 order = np.argsort(dice)
-picks = order[[-1, len(order) // 2, 0, 0]]
+picks = order[[-1, len(order) // 2, 0]]
 
 # %% tags=["nbval-check-output"]
-fig, panels = pictures.axes(4, height=3.4, width=10.0)
-for ax, i, letter in zip(panels, picks, "abcd", strict=True):
-    plane = planes[i]
-    pictures.show_mask(ax, bone.voxels[plane], px=px)
-    pictures.show_mask(ax, lost[plane], px=px, colour="missing")
-    title = f"({letter}) slice {plane}"
-    pictures.show_mask(ax, made.patch.voxels[plane], px=px, colour="patch", title=title)
-    pictures.zoom(ax, [np.argwhere(lost[plane])], px=px, margin=6 if letter == "d" else 40)
-alt = "Patches in blue over the missing bone, orange-red: good, fair, next to none, zoomed."
-pictures.picture(fig, alt, "Dice " + ", ".join(f"{dice[i]:.2f}" for i in picks[:3]))
+of_picks = [results[i] for i in picks], [planes[i] for i in picks]
+fig = pictures.paper_figures.figure_7(*of_picks, bone, made.patch, case.truth)
+alt = "Three patches, the missing bone outlined: good, fair, next to none; the last zoomed."
+pictures.picture(fig, alt, "Dice " + ", ".join(f"{dice[i]:.2f}" for i in picks))
 
 # %% tags=["nbval-check-output"]
 for one in made.record["slices"]:
@@ -380,70 +418,65 @@ for one in made.record["slices"]:
 
 # %% [markdown]
 # Of the third patch next to nothing is left: the outer curve has to arrive from inside the head, its theta1 being more
-# than 180 degrees, and crosses the inner one. It is as the authors say: "we did not get the suitable boundary
+# than 180 degrees, and comes down upon the inner one. It is as the authors say: "we did not get the suitable boundary
 # conditions".
 #
 # ## Figure 8: the skull before and after
+#
+# "(a) Original defective skull. (b)-(d) Skull surface reconstructed", with the paper's preset. The slit near the upper
+# rim of the patch is the slice of Figure 7 (c). The flat oval on the top of the head is the last slice with bone:
+# of what lies between two slices a scan knows nothing. The faint rings are where the outline steps by one pixel.
 
 # %% tags=["nbval-check-output"]
-skull = (pictures.skull_surface(bone), pictures.SKULL)
-towards = openings[0].direction
-fig, panels = pictures.axes(4, height=2.8, width=10.0)
-pictures.show_meshes(panels[0], [skull], towards, title="(a) defective")
-for ax, (name, side) in zip(panels[1:], figures.views_of([towards]).items(), strict=True):
-    parts = [skull, (paper.mesh, pictures.BLUE)]
-    pictures.show_meshes(ax, parts, side, title=f"repaired, {name}")
-alt = "A skull with a hole in its side, and closed by a blue patch, from three directions."
+skull, towards = pictures.skull_surface(bone), openings[0].direction
+fig = pictures.paper_figures.figure_8(skull, paper.mesh, towards)
+alt = "A skull with a hole in its left side; closed by a blue patch, from three directions."
 pictures.picture(fig, alt, f"prosthesis of {paper.mesh.volume / 1000:.1f} cm3")
 
 # %% [markdown]
 # ## Figure 9: maps of the distances
 #
-# All in one scale, in mm from the true bone. The paper has the first three.
+# "(a) Distance map plotted over the top surface obtained by our method. (b) Artificial inner surface and colored
+# distance map. (c) Top surface and distance map for You et al. technique." All in one scale, in mm from the true bone;
+# (d) is not in the paper. The inner side is seen from inside the head, so front and back change places. Grey is the edge,
+# in thin slits also between two slices: distances are measured on the top and on the inner side only. The white slit
+# is that of Figure 8.
 
 # %%
 shown = {
     "(a) preset, top": ("paper's preset", "outer"),
     "(b) preset, inner": ("paper's preset", "inner"),
-    "(c) You, top": ("You et al.", "outer"),
-    "default, top": ("default", "outer"),
+    "(c) You et al., top": ("You et al.", "outer"),
+    "(d) default, top": ("default", "outer"),
 }
-scale = figures.colour_scale(5.0)
+maps = []
+for title, (name, side) in shown.items():
+    one, view = designs[name], towards if side == "outer" else -towards
+    on_side = one.surface(against_truth.SIDES[side]), seen[name].distances[side]
+    maps.append(pictures.paper_figures.DistanceMap(title, one.mesh, *on_side, view))
 
 # %% tags=["nbval-check-output"]
-fig, panels = pictures.axes(4, height=2.8, width=10.0)
-for ax, (title, (name, side)) in zip(panels, shown.items(), strict=True):
-    colours = scale.to_rgba(seen[name].distances[side])[:, :3]
-    part = (designs[name].surface(against_truth.SIDES[side]), colours)
-    view = towards if side == "outer" else -towards
-    pictures.show_meshes(ax, [part], view, title=title, px=0.25, shaded=False)
-fig.colorbar(scale, ax=panels, label="mm", shrink=0.7)
+fig = pictures.paper_figures.figure_9(maps, top_mm=5.0)
 alt = "Four patches coloured by distance: You's is off most in the middle, the default nowhere."
-means = [f"{seen[name].distances[side].mean():.2f}" for name, side in shown.values()]
+means = [f"{one.distances.mean():.2f}" for one in maps]
 pictures.picture(fig, alt, "means " + ", ".join(means) + " mm")
 
 # %% [markdown]
 # The paper finds its largest distances "in small places". With its preset here it is not so: the weak `k` lets the
 # middle sink in over a wide area, a milder form of what You's flat fill does.
 #
-# ## Figure 10: You's solution beside ours
+# ## Figure 10: You's solution beside the paper's
 #
-# You's closed skull; then both patches alone, from the side.
-
-# %%
-aside = np.cross(towards, [0, 0, 1.0])
-patches = {"You et al.": "(a) its patch", "default": "(b) the default's"}
+# "(a) Viewpoints of the solution obtained by the method described in (You et al., 2009). (b) A viewpoint of the
+# prosthesis generated by our technique." Ours is the paper's own: its preset. Seen edge on, with the outline of the
+# bone that is missing, the bias towards planar shapes shows: You's patch does not reach out to the outline.
 
 # %% tags=["nbval-check-output"]
-fig, panels = pictures.axes(3, height=2.8, width=9.0)
-closed = [skull, (designs["You et al."].mesh, pictures.BLUE)]
-pictures.show_meshes(panels[0], closed, towards, title="(a) You et al.")
-for ax, (name, title) in zip(panels[1:], patches.items(), strict=True):
-    part = (designs[name].mesh, pictures.BLUE)
-    pictures.show_meshes(ax, [part], aside, title=title, px=0.3)
-alt = "You's skull closed; from the side its patch is flat, the default's bulges outwards."
-volumes = [f"{designs[name].mesh.volume / 1000:.1f}" for name in patches]
-pictures.picture(fig, alt, f"volumes {' and '.join(volumes)} cm3")
+you, missing = designs["You et al."].mesh, true.mesh
+fig = pictures.paper_figures.figure_10(skull, you, paper.mesh, missing, towards)
+alt = "You's skull closed, from two sides; edge on its patch is flat, the paper's bulges more."
+volumes = [f"{one.volume / 1000:.1f}" for one in (you, paper.mesh, missing)]
+pictures.picture(fig, alt, "You's {}, the paper's {}, missing {} cm3".format(*volumes))
 
 # %% [markdown]
 # ## Your turn: the whole method under sliders
@@ -542,8 +575,8 @@ check.exercise("10.2", end_angle)
 fig, (ax,) = pictures.axes(height=3.0)
 chords = np.linspace(5, 100, 40)
 curves = {f"R = {r} mm": [end_angle(c, r) for c in chords] for r in (70, 80, 90)}
+ax.axhspan(4, 22, color="#999999", alpha=0.2, label="the paper's outer theta0")
 pictures.plot_lines(ax, chords, curves, xlabel="gap (mm)", ylabel="theta0 (degrees)")
-ax.axhspan(4, 22, color="#999999", alpha=0.2)
 alt = "Three rising curves of angle against gap; a grey band from 4 to 22 degrees."
 pictures.picture(fig, alt, f"80 mm: {end_angle(60, 80):.1f} degrees for a gap of 60 mm")
 
@@ -560,18 +593,18 @@ pictures.picture(fig, alt, f"80 mm: {end_angle(60, 80):.1f} degrees for a gap of
 # | Table 3 | `against_truth.table3`, `paper_tables.PAPER_DISTANCES` |
 # | 23 slices, 3 by hull | `paper_tables.count_statuses` |
 #
-# | figure | what it shows | where |
-# |---|---|---|
-# | 1 (a), (b) | a slice of the skull; its bone | lesson 01, section 3; lesson 02, section 1 |
-# | 2 | boundary and skeleton | lesson 03, section 1 |
-# | 3 | inner and outer boundary, tangent lines | lesson 03, section 3 |
-# | 4 | coordinates of a balloon | here; lesson 04, section 2 |
-# | 5 (a), (b) | balloons at rest; the patch | here; lesson 05, section 1 |
-# | 6 (a) to (d) | partial loss | lesson 05, section 2 |
-# | 7 (a) to (d) | three slices, one of them bad | here |
-# | 8 (a) to (d) | the skull, open and repaired | here; lesson 00 turns it |
-# | 9 (a) to (c) | maps of the distances | here; lesson 07, section 1 |
-# | 10 (a), (b) | You's solution and ours | here; lesson 08, section 3 |
+# | figure | what it shows | code (`paper_figures`) | explained in |
+# |---|---|---|---|
+# | 1 (a), (b) | a slice of the skull; its bone | `figure_1` | lesson 01, section 3; lesson 02, section 1 |
+# | 2 | boundary and skeleton | `figure_2` | lesson 03, section 1 |
+# | 3 | inner and outer boundary, tangent lines | `figure_3` | lesson 03, section 3 |
+# | 4 | coordinates of a balloon | `figure_4` | lesson 04, section 2 |
+# | 5 (a), (b) | balloons at rest; the patch | `figure_5` | lesson 05, section 1 |
+# | 6 (a) to (d) | partial loss | `figure_6` | lesson 05, section 2 |
+# | 7 (a) to (d) | three slices, one of them bad | `figure_7` | lesson 05, section 3 |
+# | 8 (a) to (d) | the skull, open and repaired | `figure_8` | lesson 00 turns it |
+# | 9 (a) to (c) | maps of the distances | `figure_9` | lesson 07, section 1 |
+# | 10 (a), (b) | You's solution and the paper's | `figure_10` | lesson 08, section 3 |
 #
 # **Further reading.** Ioannidis, *Why most published research findings are false*, PLoS Medicine 2 (2005); then
 # Sandve and others, *Ten simple rules for reproducible computational research*, PLoS Computational Biology 9 (2013).

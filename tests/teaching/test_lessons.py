@@ -57,3 +57,12 @@ def test_every_name_that_a_lesson_puts_in_code_font_with_a_module_is_there(lesso
     for module, name in set(re.findall(r"`(\w+)\.(\w+)[`(]", text)):
         homes = [path for path in (ROOT / "cranio_nb").rglob(f"{module}.py") if "teaching" not in path.parts]
         assert not homes or any(re.search(rf"\b{name}\b", home.read_text()) for home in homes), f"{module}.{name}"
+
+
+def test_a_picture_of_a_head_has_its_sides_a_scale_and_a_key(lesson):
+    """Slices in mm are drawn on `pictures.slices`, and masks are named below them or in a legend."""
+    for cell in read_lesson(lesson).cells:
+        draws = {name for name in ("show_hu", "show_mask", "show_errors") if f"pictures.{name}(" in cell.source}
+        if cell.cell_type == "code" and draws:
+            assert "pictures.slices(" in cell.source or "px=1," in cell.source, cell.source
+            assert draws == {"show_hu"} or "pictures.key(" in cell.source or ".legend(" in cell.source, cell.source

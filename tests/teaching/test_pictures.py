@@ -6,6 +6,7 @@ import pytest
 from cranio_nb.drawing.palette import rgb_of
 from cranio_nb.mesh import Mesh
 from cranio_nb.teaching import pictures
+from cranio_nb.volume import Volume
 
 PX = 0.5
 
@@ -23,7 +24,7 @@ def test_a_mask_lies_where_its_points_lie():
     mask = np.zeros((20, 30), bool)
     mask[8, 21] = True
     _, (ax,) = pictures.axes()
-    pictures.show_mask(ax, mask, px=PX, colour="patch")
+    pictures.show_mask(ax, mask, px=PX, meaning="patch")
     pictures.show_points(ax, np.argwhere(mask), px=PX, colour=pictures.BLUE)
     left, right, bottom, top = ax.images[0].get_extent()
     x, y = ax.lines[0].get_xydata()[0]
@@ -36,15 +37,28 @@ def test_errors_are_told_apart_by_colour():
     bone[0], missing[2:5], patch[4:7] = True, True, True
     _, (ax,) = pictures.axes()
     pictures.show_errors(ax, patch, missing, bone, px=PX, title="")
-    wanted = {0: "bone", 2: "missing", 4: "patch", 6: "extra"}
+    wanted = {0: "bone", 2: "missing", 4: "right", 6: "extra"}
     for row, meaning in wanted.items():
-        assert tuple(colours_of(ax)[row, 5]) == rgb_of(pictures.MASKS[meaning]), meaning
+        assert tuple(colours_of(ax)[row, 5]) == rgb_of(pictures.MASKS[meaning][0]), meaning
 
 
-def test_a_zoom_keeps_its_margin():
-    _, (ax,) = pictures.axes()
-    pictures.zoom(ax, [np.array([[10, 40], [30, 60]])], px=PX, margin=3)
-    assert ax.get_xlim() == (17, 33) and ax.get_ylim() == (18, 2)
+def test_what_a_picture_of_errors_shows_is_named_below_it():
+    bone, missing, patch = (np.zeros((10, 10), bool) for _ in range(3))
+    figure, panels = pictures.axes(2)
+    for ax in panels:
+        pictures.show_errors(ax, patch, missing, bone, px=PX, title="")
+    pictures.key(figure)
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert names == [pictures.MASKS[meaning][1] for meaning in ("bone", "right", "missing", "extra")]
+
+
+def test_slices_of_a_head_have_sides_and_scale_and_keep_their_window():
+    flipped = Volume(np.zeros((2, 20, 30), bool), np.array([[0, 0, -1.0, 0], [0, 1, 0, 0], [2, 0, 0, 0], [0, 0, 0, 1]]))
+    _, (ax,) = pictures.slices(1, flipped, around=[np.array([[5, 10], [9, 20]])], margin_mm=3)
+    pictures.show_mask(ax, flipped.voxels[0], px=1.0)
+    assert ax.get_xlim() == (7, 23) and ax.get_ylim() == (12, 2)
+    assert {text.get_text() for text in ax.texts} == {"L", "R", "A", "P", "2 mm"}
+    assert {t.get_text(): t.get_position()[0] for t in ax.texts}["R"] > 0.9
 
 
 def test_lines_are_told_apart_without_colour():
@@ -61,6 +75,7 @@ def test_a_mesh_is_as_large_as_its_pixels_say():
     seen = np.asarray(ax.images[0].get_array())
     drawn = np.argwhere((seen < 0.98).any(axis=2))
     assert np.ptp(drawn, axis=0) + 1 == pytest.approx([10 / 0.25, 20 / 0.25], abs=2)
+    assert {text.get_text() for text in ax.texts} == {"A", "P", "S", "I", "5 mm"}
 
 
 def test_a_curve_and_a_slice_of_hu_share_their_axes():

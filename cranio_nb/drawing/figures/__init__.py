@@ -4,11 +4,37 @@ Every picture has a scale bar in mm; lines that cross differ in style as well as
 of matplotlib, and no figure touches any global state.
 """
 
-from .axes import DPI, Axes, Figure, colour_bar_figure, colour_scale, new_figure, png, ring_place, scale_bar
+from .axes import (
+    DPI,
+    Axes,
+    Figure,
+    colour_bar_figure,
+    colour_scale,
+    fill_mask,
+    laid_out_figure,
+    name_sides,
+    new_figure,
+    png,
+    ring_place,
+    scale_bar,
+)
 from .cuts import CUTS, cut_figure
 from .effects import Panel, effects_figure, pair_figure
 from .outlines import line_style, outlines_figure
-from .slices import draw_slice, slice_figure
+from .panels import (
+    key,
+    mark_zoom,
+    name_panel,
+    one_scale,
+    outline,
+    paint,
+    panel_figure,
+    plot_points,
+    show_ct,
+    slice_panel,
+    view_panel,
+)
+from .slices import draw_curves, draw_slice, show_areas, show_frame, slice_figure
 from .views import distance_figure, view_figure, views_of
 
 __all__ = [
@@ -21,16 +47,33 @@ __all__ = [
     "colour_scale",
     "cut_figure",
     "distance_figure",
+    "draw_curves",
     "draw_slice",
     "effects_figure",
+    "fill_mask",
+    "key",
+    "laid_out_figure",
     "line_style",
+    "mark_zoom",
+    "name_panel",
+    "name_sides",
     "new_figure",
+    "one_scale",
+    "outline",
     "outlines_figure",
+    "paint",
     "pair_figure",
+    "panel_figure",
+    "plot_points",
     "png",
     "ring_place",
     "scale_bar",
+    "show_areas",
+    "show_ct",
+    "show_frame",
     "slice_figure",
+    "slice_panel",
     "view_figure",
+    "view_panel",
     "views_of",
 ]

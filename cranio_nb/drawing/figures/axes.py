@@ -13,9 +13,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
+from matplotlib.patheffects import AbstractPathEffect, withStroke
 from numpy.typing import NDArray
 
-from ..palette import BLACK, MIDDLE_GREY, WHITE, rgb_shares, side_letter
+from ..palette import BLACK, WHITE, rgb_shares, side_letter
 
 DPI = 110
 
@@ -87,7 +88,7 @@ def png(figure: Figure) -> bytes:
 
 
 def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str = BLACK) -> None:
-    """Draw a scale bar in the lower left corner; call it last, when the limits of the axis are set.
+    """Draw a scale bar in the lower left corner, with a rim to be seen on any ground, once the axis has its limits.
 
     Parameters
     ----------
@@ -102,13 +103,14 @@ def scale_bar(ax: Axes, length: float, label: str | None = None, *, colour: str 
     (x0, x1), (y0, y1) = ax.get_xlim(), ax.get_ylim()
     x, y = x0 + 0.03 * (x1 - x0), y0 + 0.03 * (y1 - y0)
     step = length * np.sign(x1 - x0)
-    ax.plot([x, x + step], [y, y], color=colour, lw=3, solid_capstyle="butt")
-    text = f"{length:g} mm" if label is None else label
-    ax.text(x, y + 0.02 * (y1 - y0), text, color=colour, fontsize=8, va="bottom", ha="left")
+    bar = ax.plot([x, x + step], [y, y], color=colour, lw=3, solid_capstyle="butt", zorder=6)[0]
+    bar.set_path_effects(rim(colour, 6.0))
+    text, style = f"{length:g} mm" if label is None else label, {"va": "bottom", "path_effects": rim(colour)}
+    ax.text(x, y + 0.02 * (y1 - y0), text, style, color=colour, fontsize=8, ha="left", zorder=6)
 
 
-def name_sides(ax: Axes, right_down: NDArray[np.float64], *, colour: str = MIDDLE_GREY) -> None:
-    """Write the letters of the patient's sides at the edges of a view: right, left and above.
+def name_sides(ax: Axes, right_down: NDArray[np.float64], *, colour: str = BLACK) -> None:
+    """Write the letters of the patient's sides at the four edges of a view, each with a rim to be read on any ground.
 
     Parameters
     ----------
@@ -118,11 +120,31 @@ def name_sides(ax: Axes, right_down: NDArray[np.float64], *, colour: str = MIDDL
     colour : str
     """
     right, down = right_down[:2]
-    # letters at the right, the left and the upper edge, turned inwards
-    for x, y, direction in ((0.99, 0.5, right), (0.01, 0.5, -right), (0.5, 0.99, -down)):
-        across, up = {0.99: "right", 0.01: "left"}.get(x, "center"), "top" if y > 0.9 else "center"
-        letter, style = side_letter(direction), {"ha": across, "va": up, "color": colour}
-        ax.text(x, y, letter, style, transform=ax.transAxes, fontsize=9, weight="bold")
+    # each letter at its edge, turned inwards
+    edges = ((0.985, 0.5, right), (0.015, 0.5, -right), (0.5, 0.985, -down), (0.5, 0.015, down))
+    for x, y, direction in edges:
+        across = "center" if x == 0.5 else "right" if x > 0.5 else "left"
+        along = "center" if y == 0.5 else "top" if y > 0.5 else "bottom"
+        style = {"ha": across, "va": along, "color": colour, "path_effects": rim(colour), "zorder": 6}
+        ax.text(x, y, side_letter(direction), style, transform=ax.transAxes, fontsize=9, weight="bold")
+
+
+def rim(colour: str, width: float = 2.5) -> list[AbstractPathEffect]:
+    """An edge around lines and letters, to be seen on any ground.
+
+    Parameters
+    ----------
+    colour : str
+        Of the lines.
+    width : float
+        Of lines and edge together, points.
+
+    Returns
+    -------
+    list of AbstractPathEffect
+        Black around white lines, white around others.
+    """
+    return [withStroke(linewidth=width, foreground=BLACK if colour == WHITE else WHITE)]
 
 
 def ring_place(ax: Axes, x: float, y: float) -> None:

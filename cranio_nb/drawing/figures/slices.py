@@ -13,7 +13,7 @@ from ...volume import Volume
 from ..palette import BLACK, BONE, INNER, OUTER, PATCH, TANGENT
 from .axes import Axes, Figure, fill_mask, name_sides, new_figure, scale_bar
 
-_COLOURS = (OUTER, INNER)
+_COLOURS, _SIDES = (OUTER, INNER), ("outer", "inner")
 _PIXEL_MM = 0.35
 _AROUND_MM = 12.0  # shown around the curves
 _TANGENT_MM = 12.0
@@ -37,30 +37,79 @@ def draw_slice(
     skeleton : bool
         Boundaries by skeleton and hull, as the paper takes them; otherwise by their distance from the head's centre.
     """
-    unit, frame = sliced.unit, sliced.frames[result.plane]
-    (left, right), (bottom, top) = _limits(ax, sliced)
-    rows, cols = (np.arange(low, high, _PIXEL_MM) for low, high in ((top, bottom), (left, right)))
-    extent = _extent(rows, cols)
-    # areas first: bone, and the patch over it
-    seen = slicing.sample_mask(bone, frame, rows / unit, cols / unit)
-    fill_mask(ax, seen, extent, BONE)
-    if patch is not None:
-        fill_mask(ax, slicing.sample_mask(patch, frame, rows / unit, cols / unit), extent, PATCH, alpha=0.55)
-    # then boundaries and curves, outer before inner
-    edges = _skeleton_boundaries(bone, frame, unit) if skeleton else None
-    for points, colour in zip(edges or _boundaries(seen, rows, cols, _centre(sliced, frame)), _COLOURS, strict=True):
+    show_frame(ax, sliced)
+    seen = show_areas(ax, sliced, result, bone, patch)
+    frame = sliced.frames[result.plane]
+    edges = _skeleton_boundaries(bone, frame, sliced.unit) if skeleton else None
+    for points, colour in zip(edges or _boundaries(*seen, _centre(sliced, frame)), _COLOURS, strict=True):
         ax.plot(*points.T[::-1], ls="none", marker=".", ms=1.6, mew=0, color=colour)
-    for curve, start, colour in zip(result.curves, _starts(result), _COLOURS, strict=False):
+    draw_curves(ax, sliced, result)
+    scale_bar(ax, 20.0)
+
+
+def show_frame(ax: Axes, sliced: SlicedDesign) -> None:
+    """Give an axis limits, mm, that hold the curves of all slices of a design; rows run down.
+
+    Parameters
+    ----------
+    ax : Axes
+    sliced : SlicedDesign
+    """
+    (left, right), (bottom, top) = _limits(ax, sliced)
+    ax.set(xlim=(left, right), ylim=(bottom, top))
+
+
+def show_areas(
+    ax: Axes, sliced: SlicedDesign, result: SliceResult, bone: Volume, patch: Volume | None
+) -> tuple[NDArray[np.bool_], NDArray[np.float64], NDArray[np.float64]]:
+    """Show bone, and the patch over it, in what an axis shows of a slice.
+
+    Parameters
+    ----------
+    ax : Axes
+        With its limits.
+    sliced, result, bone, patch
+        As for `draw_slice`.
+
+    Returns
+    -------
+    bone : ndarray of bool, shape (R, C)
+    rows, cols : ndarray, shape (R,), (C,)
+        Where its pixels are, mm.
+    """
+    unit, frame = sliced.unit, sliced.frames[result.plane]
+    (left, right), (bottom, top) = ax.get_xlim(), ax.get_ylim()
+    rows, cols = (np.arange(low, high, _PIXEL_MM) for low, high in ((top, bottom), (left, right)))
+    half = _PIXEL_MM / 2
+    extent = cols[0] - half, cols[-1] + half, rows[-1] + half, rows[0] - half
+    seen = slicing.sample_mask(bone, frame, rows / unit, cols / unit)
+    areas = [(seen, BONE, 1.0, "bone")]
+    if patch is not None:
+        areas.append((slicing.sample_mask(patch, frame, rows / unit, cols / unit), PATCH, 0.55, "patch"))
+    for mask, colour, alpha, name in areas:
+        fill_mask(ax, mask, extent, colour, alpha=alpha)
+        ax.fill([], [], color=colour, alpha=alpha, label=name)
+    return seen, rows, cols
+
+
+def draw_curves(ax: Axes, sliced: SlicedDesign, result: SliceResult) -> None:
+    """Draw the curves of a slice from start to rest, where they cross, the ends of the gap and the tangents there.
+
+    Parameters
+    ----------
+    ax : Axes
+    sliced, result
+        As for `draw_slice`.
+    """
+    unit = sliced.unit
+    for curve, start, colour, side in zip(result.curves, _starts(result), _COLOURS, _SIDES, strict=False):
         if len(start):
-            ax.plot(*unit * start.T[::-1], color=colour, ls=(0, (4, 2)), lw=1.1)
-        ax.plot(*unit * curve.T[::-1], color=colour, ls="-", lw=1.8)
-    # on top: where the curves cross, and the ends of the gap
-    ax.plot(*unit * result.crossings.T[::-1], ls="none", marker="x", ms=9, mew=2.2, color=BLACK)
+            ax.plot(*unit * start.T[::-1], color=colour, ls=(0, (4, 2)), lw=1.1, label=f"{side}, start")
+        ax.plot(*unit * curve.T[::-1], color=colour, ls="-", lw=1.8, label=f"{side}, at rest")
+    if len(result.crossings):
+        ax.plot(*unit * result.crossings.T[::-1], "x", ms=9, mew=2.2, color=BLACK, label="the curves cross")
     for ends in result.ends:
         _draw_ends(ax, unit * ends.points, ends.tangents)
-    ax.set_xlim(left, right)
-    ax.set_ylim(bottom, top)
-    scale_bar(ax, 20.0)
 
 
 def slice_figure(
@@ -83,12 +132,6 @@ def slice_figure(
     return figure
 
 
-def _extent(rows: NDArray, cols: NDArray) -> tuple[float, float, float, float]:
-    """Left, right, bottom and top edge, mm, of pixels whose middles are given."""
-    half = _PIXEL_MM / 2
-    return cols[0] - half, cols[-1] + half, rows[-1] + half, rows[0] - half
-
-
 def _starts(result: SliceResult) -> NDArray:
     """Start curve of each curve, shape (n, N, 2); without points where the curves had no start."""
     return result.start if len(result.start) == len(result.curves) else np.empty((len(result.curves), 0, 2))
@@ -100,7 +143,8 @@ def _draw_ends(ax: Axes, points: NDArray, tangents: NDArray) -> None:
         tip = point + _TANGENT_MM * tangent / np.linalg.norm(tangent)
         arrow = {"arrowstyle": "-|>", "color": TANGENT, "lw": 1.3, "shrinkA": 0, "shrinkB": 0, "mutation_scale": 8}
         ax.annotate("", xy=tip[::-1], xytext=point[::-1], arrowprops=arrow)
-    ax.plot(*points.T[::-1], ls="none", marker="o", ms=4.5, mfc="white", mec=BLACK, mew=1.0)
+        ax.plot([], [], color=TANGENT, lw=1.3, label="tangent at an end")
+    ax.plot(*points.T[::-1], ls="none", marker="o", ms=4.5, mfc="white", mec=BLACK, mew=1.0, label="end of the balloon")
 
 
 def _centre(sliced: SlicedDesign, frame: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -61,14 +61,14 @@ def annotate_slice(canvas: Canvas, window: Window, grid: Volume, plane: int) -> 
     window : Window
         Where the slice is drawn.
     grid : Volume
-        Gives the size of a pixel.
+        Gives the size of a pixel and where its rows and columns lead.
     plane : int
     """
     x, y, width, height = window.box
     px = float(grid.spacing[2])
     mm = round_length(0.2 * width / window.zoom * px)
     canvas.scale_bar(x + 14, y + height - 14, mm / px * window.zoom, f"{mm:g} mm")
-    canvas.sides(window.box)
+    canvas.sides(window.box, *grid.edges[[2, 1]])
     canvas.text(x + width - 12, y + height - 14, f"slice {plane}", anchor="rs", halo=True)
 
 

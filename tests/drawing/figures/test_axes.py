@@ -51,7 +51,7 @@ def test_sides_are_named_at_their_edges():
     _, ax = figures.new_figure(2, 2)
     axes.name_sides(ax, np.array([[1.0, 0, 0], [0, 0, -1.0]]))
     places = {text.get_text(): text.get_position() for text in ax.texts}
-    assert places == {"L": (0.99, 0.5), "R": (0.01, 0.5), "S": (0.5, 0.99)}
+    assert places == {"L": (0.985, 0.5), "R": (0.015, 0.5), "S": (0.5, 0.985), "I": (0.5, 0.015)}
 
 
 def test_a_mask_is_filled_where_it_is_and_clear_elsewhere():

@@ -8,8 +8,8 @@ from cranio_nb.drawing.figures.cuts import _BONE_GREY, _CLEAR
 from cranio_nb.volume import Volume
 
 CORNERS = np.array([[-30.0, -40.0, -20.0], [30.0, 40.0, 20.0]])
-WHERE = {"L": (0, 1), "R": (0, -1), "P": (1, 1), "A": (1, -1), "S": (2, 1)}
-LETTERS = {"axial": "LRA", "coronal": "LRS", "sagittal": "PAS"}
+WHERE = {"L": (0, 1), "R": (0, -1), "P": (1, 1), "A": (1, -1), "S": (2, 1), "I": (2, -1)}
+LETTERS = {"axial": "LRAP", "coronal": "LRSI", "sagittal": "PASI"}
 
 
 def head(kind=np.int16, spot=(15, -20, 10)):

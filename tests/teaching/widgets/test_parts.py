@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from cranio_nb.drawing.canvas import Canvas
+from cranio_nb.drawing.pixels import Window
 from cranio_nb.mesh import Mesh
 from cranio_nb.teaching.widgets import parts
+from cranio_nb.volume import Volume
 
 
 def test_a_histogram_counts_what_lies_in_its_range(ct):
@@ -43,3 +45,20 @@ def test_the_scale_runs_from_its_lower_to_its_upper_end():
     ends = canvas.array()[12, [12, 208]].astype(int)
     wanted = parts.coloured(np.array([[0.0, 3.0]], np.float32), 3.0)[0]
     assert np.abs(ends - wanted).max() < 12
+
+
+def test_the_letters_of_a_slice_follow_its_affine():
+    """A grid whose columns run to the patient's right and whose rows run to the front has R, L, P and A changed."""
+    pictures = {}
+    for name, sign in (("upright", 1.0), ("turned", -1.0)):
+        affine = np.array([[0, 0, sign, 0], [0, sign, 0, 0], [1.0, 0, 0, 0], [0, 0, 0, 1]])
+        canvas = Canvas(120, 120)
+        grid = Volume(np.zeros((1, 60, 60), bool), affine)
+        parts.annotate_slice(canvas, Window.whole((0, 0, 120, 120), (60, 60)), grid, 0)
+        pictures[name] = canvas.array()
+    wanted = Canvas(120, 120)
+    wanted.sides((0, 0, 120, 120), (-1, 0, 0), (0, -1, 0))
+    top, right = np.s_[:24, 50:70], np.s_[50:70, 96:]
+    for edge in (top, right):
+        np.testing.assert_array_equal(pictures["turned"][edge], wanted.array()[edge])
+        assert (pictures["upright"][edge] != wanted.array()[edge]).any()
