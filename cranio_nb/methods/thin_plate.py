@@ -303,10 +303,8 @@ def _expected(bone: Volume, radius_map: RadiusMap, learned: Prior, axes: Array |
     predicted = predict_around(learned, bone, radius_map, axes)
     if not (np.isfinite(predicted.outer) & radius_map.hole).any():
         return None
-    outer, inner = (
-        ndimage.gaussian_filter(filled_from_nearest(radius), _RAYS_APART / radius_map.step_mm)
-        for radius in (predicted.outer, predicted.inner)
-    )
+    filled = (filled_from_nearest(radius) for radius in (predicted.outer, predicted.inner))
+    outer, inner = (ndimage.gaussian_filter(radius, _RAYS_APART / radius_map.step_mm) for radius in filled)
     return outer, inner
 
 
@@ -348,6 +346,5 @@ def thin_map(values: Array, nodes: int) -> Array:
 def _refined(values: Array, nodes: int, shape: tuple[int, ...]) -> Array:
     """The map that `thin_map` would have made these values from: cubic between the nodes."""
     start = (shape[0] // 2) % nodes
-    return ndimage.map_coordinates(
-        filled_from_nearest(values), (np.indices(shape) - start) / nodes, order=3, mode="nearest"
-    )
+    places = (np.indices(shape) - start) / nodes
+    return ndimage.map_coordinates(filled_from_nearest(values), places, order=3, mode="nearest")
