@@ -151,7 +151,7 @@ def slices(
     Examples
     --------
     >>> figure, (ax,) = slices(1, Volume(np.zeros((4, 60, 40), bool), np.diag([3.0, 0.5, 0.5, 1.0])))
-    >>> [round(limit, 2) for limit in ax.get_xlim()], [text.get_text() for text in ax.texts]
+    >>> [round(float(limit), 2) for limit in ax.get_xlim()], [text.get_text() for text in ax.texts]
     ([-0.25, 19.75], ['S', 'I', 'A', 'P', '5 mm'])
     """
     figure, every = axes(n, height=height, width=width)
