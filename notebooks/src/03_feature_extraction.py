@@ -9,8 +9,9 @@
 # %% [markdown]
 # # 03 Features: where the gap ends, and which way the bone was going
 #
-# The balloon of the next lesson needs four numbers for each gap: where it ends (two points) and in which direction
-# the bone was going there (two tangents). This lesson gets them from a slice of bone.
+# A balloon of the next lesson needs four things: where the gap ends (two points) and in which direction the bone was
+# going there (two tangents). Each gap has two balloons, along the outside and the inside of the bone. This lesson gets
+# what they need from a slice of bone.
 #
 # **After this lesson you can**
 # - compute boundary, skeleton and convex hull of a slice and explain what each is for;
@@ -40,6 +41,9 @@ from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 # How long are 10 points? The paper does not tell the size of its pixels, only that a slice has 512 x 512 of them. A
 # scan of a head is about as wide as ours, and then they are 0.45 mm, and ten points 4.5 mm. **So this course takes
 # them.** In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are 5 px here, and 10 px are 9 mm.
+#
+# *Which slice?* `classroom.bridged_plane` gives the one nearest to the middle of the hole in which both ends of the
+# gap can be found.
 #
 # *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
 # scan of your own.
@@ -115,8 +119,9 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used. The
 # thin **black line** is the line that was fitted: it goes through the mean of the pixels used. The **green arrow** has
 # its direction, but starts at the white circle. theta0 (at end 1) and theta1 (at end 2) of the caption are the angles
-# between the outer arrows and the chord, the straight line between their two circles, each with the one to expect
-# there, which section 4 explains. The caption counts the points of both ends together.
+# between the outer arrows and the chord, the straight line between their two circles. Both count from the direction
+# that leads from end 1 to end 2, so theta1, whose arrow comes the other way, is obtuse. Beside each stands the angle to
+# expect there, which section 4 explains. The caption counts the points of both ends together.
 #
 # **Predict, then move, then explain.** (No sliders? Use `panel.set(skip_mm=0)` in a new cell, and `reach_mm`, `plane`.)
 #
@@ -311,7 +316,7 @@ check.exercise("3.2", tangent)
 
 # %% [markdown]
 # **Exercise 3.3.** The way along the bone. `skip` and `reach` are lengths *along* the skeleton. Given its ordered
-# points (n, 2), return for each point the length from the first point to it.
+# points (n, 2) in px, return for each point the length from the first point to it, in px.
 
 
 # %% tags=["solution"]
@@ -335,7 +340,7 @@ check.exercise("3.3", arc_length)
 # |---|---|---|
 # | B | `SliceFeatures.boundary` | px |
 # | skeleton | `SliceFeatures.skeleton` | px |
-# | S | `SliceFeatures.hull` | px, as half-planes |
+# | S | `SliceFeatures.hull` | px, as half-planes, whose common part it is |
 # | B - S, B ∩ S | `.outer`, `.inner` | px |
 # | 10 points | `feature_extraction.PAPER_SKIP_PX` | px |
 # | theta0, theta1 | `ChordFrame.end_angles` | rad |

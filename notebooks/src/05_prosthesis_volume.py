@@ -34,7 +34,7 @@ from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 #
 # | name | meaning | unit | paper |
 # |---|---|---|---|
-# | `min_area` | islands smaller than this are dropped | px | not given |
+# | `min_area_px` | of `prosthesis_volume.fill_partial_loss`: islands smaller than this are dropped | px | not given |
 # | `axial` | cut along the planes of the scan, or along fans (section 4) | yes or no | yes |
 # | `directions` | with fans: in how many directions the hole is cut | 1 | no fans |
 # | `coupling_mm` | with fans: how far neighbouring slices share tangents (section 5) | mm | no fans |
@@ -58,7 +58,8 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 #
 # The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
 # `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the other: crumbs that touch only one of
-# them are dropped.
+# them are dropped. (In the left picture the light blue is still all that lies between the curves; in the
+# right one the bone is taken away, and it is the patch.)
 
 # %% tags=["nbval-check-output"]
 paper = cn.design(bone, openings, preset="paper")
@@ -149,7 +150,8 @@ if case.truth is not None:
     print(f"bone was cut in slices {planes[0]} to {planes[-1]}")
 
 # %% [markdown]
-# The paper had 23 slices with an opening, 3 of them by the hull and 20 by balloons.
+# The paper had 23 slices with an opening, 3 of them by the hull and 20 by balloons. Here nothing had to be carried over
+# or left empty.
 #
 # (Dice, of lesson 00, says how well the patch and the missing bone overlap: 1 is perfect. HD95: 95 % of the distances
 # between their surfaces are smaller; lesson 07.) Both are poor for a hole whose rim is all there to be seen. It is not
@@ -200,8 +202,9 @@ for number, (head, design) in enumerate(zip(heads, papers, strict=True)):
 #
 # **Predict, then move, then explain.** The panel starts with the pressure *from the end tangents*; the counts and
 # scores above are those of the paper's constant, which is the other choice. Go through the slices from the first to
-# the last. Where will the patch be thinnest, where does the hull take over from the balloon, and are there bad slices
-# in between? (No sliders? Use `panel.set(plane=23)` and the like in a new cell.)
+# the last (the bars beside the slice are the areas of their patches). Where will the patch be smallest, where does the
+# hull take over from the balloon, and are there bad slices in between? (No sliders? Use `panel.set(plane=23)` and the
+# like in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.patch(bone, opening)
@@ -230,7 +233,8 @@ for s in balloons[:2] + balloons[-3:]:
 # The last slice with a balloon is bad: next to nothing is left of its patch. Its outer theta1 stands out among those
 # printed. More than 180 degrees means that the curve has to arrive from *inside* the head, so outer and inner curve
 # cross: the outer tangent was fitted to bone that the cutter had slanted. **One bad tangent spoils a slice**, and a
-# slice knows nothing of its neighbours. Section 5 helps.
+# slice knows nothing of its neighbours. (The smaller jumps from bar to bar, in the middle, have much the same source:
+# each slice finds its own ends and tangents, with the noise of lesson 03.) Section 5 helps.
 #
 # </details>
 #
@@ -289,7 +293,8 @@ for skip in (10 * px, 10 * 0.45):
 # the short side of the hole, where the way from bone to bone is shortest. Our default turns the fan into six directions
 # and takes a mean, in which a slice counts more where it is the surer: near its rim, and on a short way.
 #
-# **Predict:** will one fan, across the short side, be enough? (Nine designs: the next cell takes some 15 seconds.)
+# **Predict:** will one fan, across the short side, be enough? (Nine designs: the next cell takes some 15 seconds. They
+# have the package's own settings, not the paper's preset: so the row `axial` differs a little from the last one above.)
 
 # %% tags=["nbval-check-output"]
 tries = {"axial": {"axial": True}}
@@ -314,8 +319,9 @@ print("from one to six the mean falls by", *(f"{gain:.2f} mm" for gain in one_wa
 #
 # </details>
 #
-# The fans of the first head: at the left the pages of the first one as lines, for we look along the back of the book;
-# at the right the curves that they carry across the hole (dark), and those of the other five directions.
+# The fans of the first head: at the left the pages of the first one as lines, for we look along the back of the book
+# (light blue is the patch); at the right the outer curves that they carry across the hole (dark and broad), and those
+# of the other five directions (light and thin). Of each fan every sixth page is drawn.
 
 # %% tags=["nbval-check-output"]
 diagrams.slice_fans(heads[0][1], closed["fans, 6 direction(s)"][0])

@@ -55,7 +55,8 @@ print(f"{patch.voxels.sum()} voxels of {np.round(patch.spacing, 2)} mm")
 # Take eight neighbouring voxels as the corners of a cube. Each is in or out, which makes 2 x 2 x ... x 2 = 256 cases. A
 # table gives the triangles of each case, with corners half-way along the edges of the cube. March on to the next cube.
 #
-# **Predict.** Planes are 2.5 mm apart, pixels 0.9 mm. How high will the stairs be?
+# **Predict.** Planes are 2.5 mm apart, pixels 0.9 mm. How high will the stairs be? Do they change the area, and the
+# volume? (Below the picture a slope is compared with its stairs: once of the faces of cubes, once of marching cubes.)
 
 # %% tags=["nbval-check-output"]
 print(f"{2**8} cases")
@@ -115,8 +116,9 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 
 # %% [markdown]
 # **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
-# leave the bound by taking very many? How far will those vertices have moved that are stopped by it (the bars beside
-# the mesh count vertices by the way they moved)? (No sliders? Use `panel.set(steps=200)` in a new cell.)
+# leave the bound by taking very many? How far will those vertices have moved that are stopped by it? (The bars beside
+# the mesh count vertices by the way they moved; their scale is logarithmic, so that a few can be seen beside many.) (No
+# sliders? Use `panel.set(steps=200)` in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.surface(patch)
@@ -146,7 +148,8 @@ for steps in (10, 24):
 # clipped to its box of half a voxel in every step.
 #
 # What would go further stops at a wall of the box. Most walls that matter here are half a plane away: hence the pile
-# near 1.25 mm. Only a vertex that is stopped along all three axes sits in a corner of the box, at 1.40 mm.
+# near 1.25 mm, and a little beyond it, as along the wall a vertex may still move. Only a vertex that is
+# stopped along all three axes sits in a corner of the box, at 1.40 mm.
 #
 # </details>
 #
@@ -173,8 +176,11 @@ print(f"99 % of the wall is thicker than {report.wall_p1:.1f} mm")
 # %% [markdown]
 # **Can it?** Yes, if it is `sound` (manifold, of positive volume, without crossings), in one part for each hole, and
 # nowhere thinner than your workshop's material and machine allow. The first two hold here; for the third ask the
-# workshop what it makes of a wall of 4.1 mm. Whether it can also be put *in* is another question: a rim that widens
-# inwards holds it back.
+# workshop what it makes of a wall of 4.1 mm, and mind that a hundredth of the surface has a thinner one. Whether it can
+# also be put *in* is another question: a rim that widens inwards holds it back.
+#
+# What would it weigh? PMMA is acrylic glass, PEEK a hard plastic, Ti-6Al-4V the usual alloy of titanium, with aluminium
+# and vanadium. Then we write the files.
 
 # %% tags=["nbval-check-output"]
 data = weigh_implant(smooth)
@@ -191,7 +197,8 @@ assert size == 84 + 50 * len(made.mesh.faces)
 print(f"prosthesis.stl: {size} bytes = 84 + 50 x {len(made.mesh.faces)} faces")
 
 # %% [markdown]
-# Note that an STL file knows no unit. Everybody assumes mm; 3MF says so.
+# An STL file is a header of 84 bytes and then 50 bytes for each face: its normal and its corners, as plain numbers.
+# So it knows no unit. Everybody assumes mm; 3MF, a younger format, says so.
 #
 # ## A mistake to make once
 #

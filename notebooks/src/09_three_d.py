@@ -67,7 +67,7 @@ diagrams.plate_map(bone, vault)
 # %% [markdown]
 # The same rings, spokes and numbers on the head and on its map. Rings are bent on the head and circles on the map,
 # and it is on the map that the plate is bent across the hole (light blue). The same map again, and that of the
-# thickness:
+# thickness, both with the hole in white:
 
 # %% tags=["nbval-check-output"]
 fig, panels = pictures.axes(2, height=3.8)
@@ -101,7 +101,8 @@ print(f"radius of the map's mm: {vault.step_mm / vault.grid.step_rad:.0f} mm")
 print(f"radius of the missing bone: {away.min():.0f} to {away.max():.0f} mm")
 
 # %% [markdown]
-# (In the white corner, far from the hole, no vault was found. The fine rings are steps of one voxel.)
+# (In the white corner, far from the hole, no vault was found. The fine rings, plainest in the map of the thickness, are
+# steps of one voxel.)
 #
 # A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
 # no better than flat starts from a sphere. (The flat fill of lesson 08 started from a plane.)
@@ -120,8 +121,8 @@ print(f"radius of the missing bone: {away.min():.0f} to {away.max():.0f} mm")
 # written as a matrix D (exercise 9.1). The length a says over what distance data are smoothed. What costs nothing shows
 # what a plate wants to be: a straight line for n = 2, a parabola for n = 3.
 #
-# **Predict:** a bow with a gap of 50 mm, bone on 25 mm beside it, measured with a noise of 0.2 mm. Which order comes
-# out too low for a large a? And which suffers most from the noise for a small one?
+# **Predict:** a bow (an arc of a circle) with a gap of 50 mm and 25 mm of bone on each side of it, measured with a
+# noise of 0.2 mm. Which order comes out too low for a large a? And which suffers most from the noise for a small one?
 
 # %%
 x = np.arange(-50.0, 51)
@@ -208,7 +209,8 @@ for which, term in terms.items():
 # by 0.44 mm and the third up by 0.42 mm, and the errors cancel.
 #
 # These lengths were found with the truth at hand: they are the best for *this* bow, this gap, this noise, and no more.
-# The last row is what section 3 will use, and it would do badly here. Why the two differ, we try there.
+# The row of 1.3 and 1.8 mm is what section 3 will use, and it would do badly here: its spread is 0.84 mm. Why the best
+# lengths differ there, we try there.
 #
 # ## 3. The plate
 #
@@ -224,8 +226,12 @@ for which, term in terms.items():
 #   differences. That is what is soft about this prior: no step at the rim, as a copy would leave (lesson 08), and where
 #   the other side has no bone the term is gone.
 #
-# **Predict, then move, then explain.** In the hole of our head the map's radius falls and rises again. Will the second
-# order alone, made strong (a = 12), be too high or too deep? And the third alone at b = 1.8? What if all three are 0?
+# **Predict, then move, then explain.** From front to back the map's radius falls towards the front of our hole and
+# rises again across it. Will the second order alone, made strong (a = 12), be too high or too deep? And the third alone
+# at b = 1.8? What if all three are 0?
+#
+# The panel has at the left how far the plate lies off the outer surface of the whole skull, in the hole (outlined) and
+# beside it; at the right a cut along the map's middle row, from front (A) to back (P).
 #
 # Controls: `second_mm`, `third_mm`, `mirror_mm`, e.g. `plate.set(second_mm=12, third_mm=0, mirror_mm=0)`.
 
@@ -243,12 +249,12 @@ _ = plate.set(second_mm=1.3, third_mm=1.8, mirror_mm=1.6)
 # <details>
 # <summary>Answer</summary>
 #
-# On the map the hole lies in a valley: the temple is nearer to the eye than what is around it. The second order wants
-# the map flat and fills the valley: 1.63 mm too high on average. The third continues the curvature that it finds at the
-# rim, bumps and all: 0.83 mm too deep. Both: 0.16 mm too deep, and with the mirrored side 0.06 mm. This head is smooth,
-# so a weak second order alone does as well (rms, the root of the mean square: 0.22 mm against 0.24 mm), and what the
-# other terms are worth on real ones it cannot tell. With nothing asked for there is a lid at the mean radius, up to
-# 9.94 mm off.
+# From front to back the hole lies in a valley of the map: the temple is nearer to the eye than what is in front of it
+# and behind it. (Downwards the map falls further.) The second order wants the map flat and fills the valley: 1.63 mm
+# too high on average. The third continues the curvature that it finds at the rim, bumps and all: 0.83 mm too deep. Both
+# orders, weak (1.3 and 1.8 mm): 0.16 mm too deep, and with the mirrored side 0.06 mm. This head is smooth, so a weak
+# second order alone does as well (rms, the root of the mean square: 0.22 mm against 0.24 mm), and what the other terms
+# are worth on real ones it cannot tell. With nothing asked for there is a lid at the mean radius, up to 9.94 mm off.
 #
 # </details>
 #
@@ -292,18 +298,19 @@ for a, b in ((1.3, 1.8), (8.5, 11)):
 #
 # `cranio-nb prior learn FOLDER --out prior.npz` lays intact skulls on their mean, measures their radii along the same
 # rays, and keeps them as samples of a Gaussian process: each radius has a mean, and each pair of radii a covariance.
-# For a skull with a hole, the known radii y give the missing ones as the *conditional mean*
+# For a skull with a hole, the known radii y give the missing ones as the *conditional mean*, that is, the mean over all
+# skulls of this kind that have the radii y where bone is:
 #
 # f* = mu* + C* (C + s^2 I)^-1 (y - mu),
 #
 # one linear system again. mu and mu* are the means of the known and of the missing radii, C the covariance of the known
-# ones with each other, C* that of the missing with the known, s the noise of a radius. With `prior="prior.npz"` these
-# radii f* are where the plate starts: the energy now has the bending of the difference h = g - f* in place of that of
-# g, and inside the hole k |h|^2 besides, weak springs that pull the plate to f*.
+# ones with each other, C* that of the missing with the known, s the noise of a radius, I the identity matrix. With
+# `prior="prior.npz"` these radii f* are where the plate starts: the energy now has the bending of the difference
+# h = g - f* in place of that of g, and inside the hole k |h|^2 besides, weak springs that pull the plate to f*.
 #
-# **Question.** The springs have one strength k everywhere. Why do they hardly act in a burr hole, but decide in a wide
-# one? (How does the force that bends a plate by 1 mm change with the plate's size?) Here is a test: the bone around a
-# round hole says 0, the prior says 1. What has the middle of the hole?
+# **Question.** The springs have one strength k everywhere. Why do they hardly act in a burr hole (a small one, from a
+# drill), but decide in a wide one? (How does the force that bends a plate by 1 mm change with the plate's size?) Here
+# is a test: the bone around a round hole says 0, the prior says 1. What has the middle of the hole?
 
 # %% tags=["nbval-check-output"]
 across = np.arange(-95, 96, 2.0)  # mm
@@ -331,22 +338,26 @@ for size in (15, 30, 50, 70, 100):
 #
 # ## 5. A sheet that moves
 #
-# A surface of D-NURBS ("dynamic non-uniform rational B-splines") is a weighted mean of control points p,
+# A surface of D-NURBS ("dynamic non-uniform rational B-splines") is a weighted mean of control points p_ij, which form
+# a net of rows i and columns j, with weights w_ij:
 #
 # s(u, v) = sum w_ij p_ij B_i(u) B_j(v) / sum w_ij B_i(u) B_j(v),   u and v the place on the sheet,
 #
 # where each B is a bump of cubic pieces that is 0 but for a few spans between knots, so a control point moves the sheet
-# near itself only. It is a body with mass: the control points obey Newton's law,
+# near itself only. It is a body with mass: the control points, all together p, obey Newton's law,
 #
 # M p'' + D p' + K p = f.
 #
-# A dash is a derivative in time. M is the mass, D the friction (not the differences of section 2), K the stiffness of a
-# thin plate, f the pull of springs to the bone around the hole. It is the balloon of lesson 04 with one dimension more,
-# with inertia, and without a pressure. Ours has a *natural shape*: the sphere that fits the bone best is free of
+# A dash is a derivative in time. M is the mass, D the friction, K the stiffness of a thin plate, f the pull of springs
+# to the bone around the hole (D and f are not those of section 2). It is the balloon of lesson 04 with one dimension
+# more, with inertia, and without a pressure. Ours has a *natural shape*: the sphere that fits the bone best is free of
 # stress, and bending is counted from there.
 #
 # **Predict, then move, then explain.** The sheet is pushed into the head and let go. Does a heavier sheet, or one with
 # more friction, come to rest elsewhere? Does a stiffer one? And where do the control points lie, on the sheet?
+#
+# At the top left of the panel are sheet, control net and bone, seen from outside; at the top right a cut across the
+# hole; below the energy of each step. (The energy sums squares of lengths over an area, mm2 times mm2: hence mm4.)
 #
 # Controls: `wavelength_mm` (the stiffness: longer is stiffer), `mass`, `damping` (the friction) and `step`, e.g.
 # `elastic.set(mass=3)`. The panel takes 40 steps at most; a sheet that is "not at rest" then is still on its way.
@@ -422,14 +433,14 @@ pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone ar
 # <summary>Answer</summary>
 #
 # For the large one, on this head. Across the hole of the class all three are within a voxel, and slices do as well as
-# the plate. Across 121 mm the slices have nothing to go by in the middle; the plate knows the curvature of the other
-# side. That helps here more than in life: the phantom is nearly symmetric. The elastic sheet bulges, as its natural
-# shape is a sphere and the side of a head is flatter than that: a good guess for a small hole may be a bad one for a
-# large hole.
+# the plate. Across 121 mm the slices have nothing to go by in the middle; the plate sees the whole rim at once, and
+# knows the curvature of the other side. (How much each of the two is worth, this table does not tell.) The other side
+# helps here more than in life: the phantom is nearly symmetric. The elastic sheet bulges, as its natural shape is a
+# sphere and the side of a head is flatter than that: a good guess for a small hole may be a bad one for a large hole.
 #
-# One head is one draw, and a smooth one. On ten real skulls (the README's table) the order is the same and the three
-# lie nearer together: mean Dice 0.935 for the plate, 0.925 for the slices, 0.916 for D-NURBS (worst case 0.895,
-# 0.879 and 0.863).
+# One head is one draw, and a smooth one. On ten real skulls (the README's table) the order is that of the large hole,
+# but the three lie nearer together: mean Dice 0.935 for the plate, 0.925 for the slices, 0.916 for D-NURBS (worst case
+# 0.895, 0.879 and 0.863).
 #
 # </details>
 #
