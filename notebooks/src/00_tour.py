@@ -10,8 +10,8 @@
 # # 00 Tour: from a head CT to a prosthesis
 #
 # A patient has a hole in the skull. We have a CT scan of the head. We want the piece of bone that is missing, as a
-# solid body that a machine can make. This lesson walks through all of it, once and quickly. Each later lesson opens
-# one of the boxes.
+# solid body that a machine can make. This lesson walks through all of it, once and quickly. Lessons 01 to 06 open the
+# boxes one by one, lessons 07 to 11 ask how good the result is and what else there is.
 #
 # > **Not for clinical use.** This is a tool for teaching and research, not a medical device. The head below is
 # > synthetic; nobody's data is used.
@@ -33,7 +33,7 @@
 # | 3 deformable model | ends and tangents | outer and inner curve across the gap | lesson 04 |
 # | 4 prosthesis volume | curves | patch of voxels | lesson 05 |
 # | 5 surface reconstruction | patch | closed triangle mesh | lesson 06 |
-# | and afterwards | mesh and truth | how good is it? what else closes it? | lessons 07 to 10 |
+# | and afterwards | mesh and truth | how good is it? what else closes it? which settings? | lessons 07 to 11 |
 
 # %%
 import numpy as np
@@ -64,7 +64,8 @@ viewer
 
 # %% [markdown]
 # *Move this picture with its sliders; where it has none, from a new cell of a notebook:*
-# `viewer.set(plane=30)`. *Its controls are* `plane`, `centre` *and* `width`; lesson 01 explains the last two.
+# `viewer.set(plane=30)`. *Its controls are* `plane`, `centre` *and* `width`; lesson 01 explains the last two. At the
+# right: how many voxels have which HU, with the centre (full line) and the ends of the width (dashes).
 #
 # The bright ring is the skull. Move through the slices: somewhere the ring is open. The letters are the patient's
 # sides: A front (anterior), P back (posterior), L left, R right. **L is at the right of the picture**, because
@@ -106,7 +107,7 @@ diagrams.ray_fan(bone, openings[0])
 # The slice is turned so that the **chord**, the straight line between the ends, lies level (thin grey dashes). The
 # orange dashes are the curve that the balloon starts from. It is made from the ends and their tangents and is a good
 # guess already, so little is left to inflate. The broad pale line is the bone that is missing, known because this head
-# is synthetic. The two plots at the right (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04
+# is synthetic. The two plots below (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04
 # explains them. You see the balloon at rest; where there is a button to play it, watch it again from step 0.
 
 # %% tags=["nbval-check-output"]
@@ -161,9 +162,9 @@ print(
 # %% [markdown]
 # ## 6. How good is it?
 #
-# For a synthetic head we know the bone that is missing. **Dice** says how well two masks overlap (1 is perfect). The
-# **95th percentile of the surface distance** says how far apart the surfaces are, in mm, leaving out the worst one in
-# twenty.
+# For a synthetic head we know the bone that is missing. **Dice** (DSC in tables) says how well two masks overlap (1 is
+# perfect). The **95th percentile of the surface distance** (HD95) says how far apart the surfaces are, in mm, leaving
+# out the worst one in twenty.
 
 # %% tags=["nbval-check-output"]
 if case.truth is not None:

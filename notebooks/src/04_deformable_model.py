@@ -90,7 +90,8 @@ diagrams.chord_frame(drawn, expected_deg=expect)
 
 # %% [markdown]
 # This is our slice in its chord frame: the letters tell how it is turned. Both angles count from the direction of
-# `along`, so theta1 goes over the top to the arrow at the far end.
+# `along`, so theta1 goes over the top to the arrow at the far end. "Expect" is the angle that belongs to the true bone
+# (lesson 03, section 4); the broad pale line is that bone.
 #
 # ## 2. The forces
 #
@@ -111,7 +112,8 @@ diagrams.chord_frame(drawn, expected_deg=expect)
 # index**, with weights 1. Keep this in mind; it is the key to section 4.
 #
 # Each snaxel then feels three forces. Here they are for the paper's `k` in a gap of 90 px whose ends rise at 13.8 degrees
-# (a gap in a circle, see section 3). A force has the colour of what exerts it: blue the curve, black the wind.
+# (a gap in a circle, see section 3). A force has the colour of what exerts it: blue the curve, black the wind. Of the
+# blue arrows those of the tension have a full head, those of the rigidity an open one.
 
 # %% tags=["nbval-check-output"]
 theta = np.radians(13.8)

@@ -132,9 +132,10 @@ for name, values in zip(names, wide.T, strict=True):
 
 # %% [markdown]
 # From the angles one would read gaps of 56 mm on average. The balloons' ends are L = 74 mm apart, as L has the two
-# `skip` in it, and bone is missing over 61 mm. The tangents are those at the balloons' ends, so L is what belongs to
-# the angles, and the R that fits is 106 mm, not 80: the side of this head is flatter. Gap and radius are two unknowns,
-# and no single angle gives both. Of the authors' opening we may say that it was a wide one, and not much more.
+# `skip` in it (counted along a skeleton that itself stops short of the cut), and bone is missing over 61 mm. The
+# tangents are those at the balloons' ends, so L is what belongs to the angles, and the R that fits is 106 mm, not 80:
+# the side of this head is flatter. Gap and radius are two unknowns, and no single angle gives both. Of the authors'
+# opening we may say that it was a wide one, and not much more.
 #
 # The second end is the steeper one in 20 of 22 slices: this skull is rounder towards the back. One exception is the
 # last bridged slice, whose outer theta1 is more than 180 degrees: there the curve has to arrive from *inside* the head.
@@ -281,10 +282,11 @@ for wide_mm, high_mm in ((0.45, 0.45), (0.9, 2.5), (0.45, 2.5)):
 #
 # ## The figures
 #
-# All ten, in the paper's order and with its letters (a), (b), ..., drawn by `paper_figures` from the designs above, with
-# the paper's preset where the paper shows its own method. One colour has one meaning throughout: sand is bone, light
-# blue the patch, dark blue the outer side and the finished prosthesis, orange-red the inner side, purple the truth. What
-# a frame holds is shown larger beside it or below.
+# All ten, in the paper's order and with its letters (a), (b), ..., drawn by `paper_figures` from the designs above,
+# with the paper's preset where the paper shows its own method. One colour has one meaning throughout: sand is bone,
+# light blue the patch, dark blue the outer side and the finished prosthesis, orange-red the inner side, green the
+# tangents, purple the truth. (A skull in space is ivory, and distances have a scale of their own.) What a frame holds
+# is shown larger beside it or below.
 #
 # ## Figures 1 to 3: one slice
 #
@@ -311,8 +313,9 @@ alt = "The ring of bone with its boundary pixels and its skeleton; one end of it
 pictures.picture(fig, alt, f"slice {plane}")
 
 # %% [markdown]
-# "Inner and outer boundaries of the bone plus the tangent lines." The paper's red and green are our orange-red and dark
-# blue. The balloons begin at the rings, `skip` inside the bone (lesson 03, section 3).
+# "Inner and outer boundaries of the bone plus the tangent lines." The boundaries that the paper draws red and green are
+# our orange-red and dark blue; green are our tangents. The balloons begin at the rings, `skip` inside the bone (lesson
+# 03, section 3).
 
 # %% tags=["nbval-check-output"]
 fig = pictures.paper_figures.figure_3(bone, plane, middle.ends)
@@ -440,7 +443,7 @@ pictures.picture(fig, alt, f"prosthesis of {paper.mesh.volume / 1000:.1f} cm3")
 # distance map. (c) Top surface and distance map for You et al. technique." All in one scale, in mm from the true bone;
 # (d) is not in the paper. The inner side is seen from inside the head, so front and back change places. Grey is the edge,
 # in thin slits also between two slices: distances are measured on the top and on the inner side only. The white slit
-# is that of Figure 8.
+# is that of Figure 8. A circle is where the distance is largest.
 
 # %%
 shown = {
@@ -462,8 +465,9 @@ means = [f"{one.distances.mean():.2f}" for one in maps]
 pictures.picture(fig, alt, "means " + ", ".join(means) + " mm")
 
 # %% [markdown]
-# The paper finds its largest distances "in small places". With its preset here it is not so: the weak `k` lets the
-# middle sink in over a wide area, a milder form of what You's flat fill does.
+# The paper finds its largest distances "in small places". With its preset here that holds for the very largest: the
+# circle of (a) lies at the slit. But it is not the whole story: the weak `k` lets the middle sink in over a wide area, a
+# milder form of what You's flat fill does.
 #
 # ## Figure 10: You's solution beside the paper's
 #
@@ -515,13 +519,13 @@ for name, (k, n) in snaxels.items():
 # <details>
 # <summary>Answer</summary>
 #
-# What breaks the balance of pressure and tension: k = 0.062 mm per index squared, by hand, in place of the pressure
-# that follows from the ends. The same figure as the paper's, and yet here far too *strong*, where section "Table 3" and
-# lesson 04 find it too weak. Its unit is mm in place of px, and what matters is k N^2: 99 mm with N = 40, against 22 mm
-# for the preset on our pixels (N = 20), and 11 mm on pixels of half the size. Then come slicing along the scan's own
-# planes and a tension of 2: `k` is worked out for a tension of 1, and twice of it pulls the balloon flat. Then fitting
-# tangents right at the cut (`skip_mm` 0), and a `reach_mm` of 4, too short to carry a tangent. The number of snaxels
-# hardly matters here: 11 do as well as 41.
+# What breaks the balance of pressure and tension: k = 0.062 mm per index squared, by hand (`own`), in place of the
+# pressure that follows from the ends. The same figure as the paper's, and yet here far too *strong*, where section
+# "Table 3" and lesson 04 find it too weak. Its unit is mm in place of px, and what matters is k N^2: 99 mm with N = 40,
+# against 22 mm for the preset on our pixels (N = 20), and 11 mm on pixels of half the size. Then come slicing along the
+# scan's own planes and a tension of 2: `k` is worked out for a tension of 1, and twice of it pulls the balloon flat.
+# Then fitting tangents right at the cut (`skip_mm` 0), and a `reach_mm` of 4, too short to carry a tangent. The number
+# of snaxels hardly matters here: 11 do as well as 41.
 #
 # A `skip_mm` of 5 does *better* than the default, on this one coarse head. But a value chosen on one head fits that
 # head, as the paper's `k` did.
@@ -598,7 +602,7 @@ pictures.picture(fig, alt, f"80 mm: {end_angle(60, 80):.1f} degrees for a gap of
 # | 1 (a), (b) | a slice of the skull; its bone | `figure_1` | lesson 01, section 3; lesson 02, section 1 |
 # | 2 | boundary and skeleton | `figure_2` | lesson 03, section 1 |
 # | 3 | inner and outer boundary, tangent lines | `figure_3` | lesson 03, section 3 |
-# | 4 | coordinates of a balloon | `figure_4` | lesson 04, section 2 |
+# | 4 | coordinates of a balloon | `figure_4` | lesson 04, section 1 |
 # | 5 (a), (b) | balloons at rest; the patch | `figure_5` | lesson 05, section 1 |
 # | 6 (a) to (d) | partial loss | `figure_6` | lesson 05, section 2 |
 # | 7 (a) to (d) | three slices, one of them bad | `figure_7` | lesson 05, section 3 |

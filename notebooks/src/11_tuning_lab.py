@@ -65,7 +65,8 @@ quick = {"directions": 2, "n_snaxels": 21}  # see above
 # each of the six what the Dice coefficient (DSC) does if you halve the value, or double it. Which of them would you not
 # have to tune at all?
 #
-# Below "more", `set k by hand` makes the slider of `k` count. In code: `panel.set(tension=2)`.
+# Below "more", `set k by hand` makes the slider of `k` count. In code: `panel.set(tension=2)`. The small circle in the
+# map is where the distance is largest.
 
 # %% tags=["nbval-check-output"]
 panel = widgets.tuner(case.ct, case.truth)
@@ -79,13 +80,16 @@ for change in ({}, *some):
 _ = panel.set(**start)
 
 # %% [markdown]
-# `panel.parameters` is what `cn.design` and `cranio-nb design --params` take, and the button under "more" writes them
-# to a file. What a panel cannot say: is a change in the second decimal much? That depends on how far heads differ.
+# The last line is the quick setting of the sections below, with twice the tension. `panel.parameters` is what
+# `cn.design` and `cranio-nb design --params` take, and the button under "more" writes them to a file. What a panel
+# cannot say: is a change in the second decimal much? That depends on how far heads differ.
 #
 # ## 2. One at a time, on three heads
 #
 # Each setting on each head, by Dice (more is better) and by the mean distance of the two surfaces (less is better). In
-# the pictures `auto` is the `k` that follows from the ends.
+# the picture a line is the mean of the three heads, and the grey band one standard deviation to each side. `auto` is
+# the `k` that follows from the ends; it differs from slice to slice, so it has no place among the others and comes
+# first.
 
 # %%
 sweeps = {
@@ -118,9 +122,9 @@ tried = {
 }
 
 # %% [markdown]
-# From each score the one of the default *on the same head* is taken before mean and spread: how hard a head is then
-# drops out (exercise 11.1). The last column was measured beforehand: Dice on the finer head of `"class"`, with six
-# directions, 41 snaxels and a quarter of each `k`, where the default has 0.969.
+# From each score the one of the default *on the same head* is taken before mean and spread (the standard deviation over
+# heads): how hard a head is then drops out (exercise 11.1). The last column was measured beforehand: Dice on the finer
+# head of `"class"`, with six directions, 41 snaxels and a quarter of each `k`, where the default has 0.969.
 
 # %%
 class_head = {
@@ -185,9 +189,9 @@ print(f"correlation of both: {np.corrcoef(means, there)[0, 1]:.2f}")
 #
 # ## 3. Why the automatic k breaks when the tension changes
 #
-# At rest three forces balance at each snaxel (lesson 04): w1 D^2 c - w2 D^4 c + k n = 0. On a circle of radius R with
-# snaxels h apart, D^2 c is h^2 / R long and D^4 c is h^4 / R^3, both along the normal. So the balloon rests on the
-# circle if
+# At rest three forces balance at each snaxel (lesson 04): w1 D^2 c - w2 D^4 c + k n = 0, where D^2 and D^4 are second
+# and fourth differences from snaxel to snaxel, and n points out. On a circle of radius R with snaxels h apart, D^2 c is
+# h^2 / R long and points in, D^4 c is h^4 / R^3 long and points out. So the balloon rests on the circle if
 #
 # k = w1 h^2 / R + w2 h^4 / R^3.
 #
@@ -269,8 +273,9 @@ pictures.picture(fig, alt, f"gap 60 mm: {high:.1f} to {low:.1f} mm")
 # ## 4. A method of your own
 #
 # A method is a function of the bone and its openings that yields a piece for each of them. One line makes it known;
-# its keyword arguments are its options. This one draws the vault as a map of radii (lesson 09), fits one polynomial to
-# the bone around the hole, and reads off what is missing.
+# its keyword arguments are its options. This one draws the vault as a map of radii (lesson 09; `u` and `v` are places
+# on the map), fits one polynomial for each side to the bone around the hole, of which every ninth radius is enough, and
+# reads off what is missing.
 
 
 # %%
@@ -397,13 +402,14 @@ pictures.picture(
 #
 # Hardly. Alone, `k` explains 10 % of the variance and the tension 9 %. Together they explain 81 % beyond that: each is
 # good or bad by what the other one is. The two good pairs have the same k / w1, which is all that matters (section 3);
-# the lines cross, and the mean over the other parameter hides it. A search that moves one parameter at a time would
-# keep both where they are.
+# the lines cross, and the mean over the other parameter hides it. A search that moves one parameter at a time from one
+# of the good pairs sees losses only, and never finds the other.
 #
 # </details>
 #
-# **Question.** The best of ten settings is better than the default by how much? It was chosen by the very heads that it
-# is judged by. Judge each head by the setting that is best on the *others* (exercise 11.4).
+# **Question.** The best of these settings (the four pairs and the default) is better than the default by how much? It
+# was chosen by the very heads that it is judged by. Judge each head by the setting that is best on the *others*
+# (exercise 11.4).
 
 # %% tags=["nbval-check-output"]
 whole = summaries.where(rows, rows["contender"] == "slicewise")
@@ -419,8 +425,8 @@ print(f"the default {top.usual.mean:.3f}")
 # <summary>Answer</summary>
 #
 # By 0.001, and the heads that were left out take even that back: with the setting that the others chose they have
-# 0.936 on average, less than the default. The search has found nothing, and the honest number says so. With more
-# settings and few heads the best always looks better than it is.
+# 0.936 on average, less than the default. The search has found nothing, and the honest number says so. The more
+# settings and the fewer heads, the more the best one tends to look better than it is.
 #
 # </details>
 #
