@@ -36,15 +36,17 @@ that what slows the machine for a while slows all of them, and ratios are taken 
 
 {marked}
 
-![How many times as long as SimpleITK each process takes, and how time and memory grow with slices, pixels, width of
-the gap and snaxels.](img/performance.png)
+![{seen}](img/performance.png)
 
 """
+_RATIOS_SEEN = "How many times as long as SimpleITK each process takes, and how many times are wanted at most."
+_GROWTH_SEEN = " Below: how time and memory grow with slices, pixels, width of the gap and snaxels."
 
 
 def page(found: Mapping[str, Any]) -> str:
     """The page as text."""
-    top = _TOP.format(rounds=found["rounds"], marked=fill(_marked(found), 120))
+    seen = _RATIOS_SEEN + (_GROWTH_SEEN if found.get("growth") else "")
+    top = _TOP.format(rounds=found["rounds"], marked=fill(_marked(found), 120), seen=seen)
     return top + "\n".join(lines(found)).rstrip() + "\n"
 
 
