@@ -72,7 +72,6 @@ def count_statuses(slices: Sequence[dict[str, Any]]) -> dict[str, int]:
     {'balloon': 0, 'hull': 2, 'carried': 0, 'skipped': 0}
     """
     found = Counter(s["status"] for s in slices)
-    # smallest and largest over the slices; each value is a pair (outer, inner)
     return {status: found[status] for status in STATUSES}
 
 
