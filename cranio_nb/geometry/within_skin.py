@@ -8,6 +8,7 @@ from scipy import ndimage
 
 from ..volume import Volume
 from .voxel_pieces import SAME_SLICE, edge_labels
+from .voxel_runs import find_pieces
 
 AIR_HU = -300.0
 """HU below which a voxel holds mostly air."""
@@ -93,10 +94,14 @@ def _air_in_tubes(air: NDArray[np.bool_], spacing: NDArray[np.float64]) -> NDArr
 
 def _drop_bodies_outside(mask: NDArray[np.bool_], head: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """`mask` within the head, without the bodies of which more stands outside: of a shell that touches skin nothing."""
-    labels, n_bodies = ndimage.label(mask)
+    bodies = find_pieces(mask)
     inside = mask & head
-    device = 2 * np.bincount(labels[inside], minlength=n_bodies + 1) < np.bincount(labels[mask], minlength=n_bodies + 1)
-    return inside & ~device[labels]
+    every = bodies.places(np.ones(bodies.n_pieces, bool))
+    body = np.repeat(bodies.piece, bodies.length)
+    n_inside = np.bincount(body[head.ravel()[every]], minlength=bodies.n_pieces)
+    device = 2 * n_inside < bodies.sizes
+    inside.ravel()[bodies.places(device)] = False
+    return inside
 
 
 def _erode(mask: NDArray[np.bool_], width_mm: float, spacing: NDArray[np.float64]) -> NDArray[np.bool_]:

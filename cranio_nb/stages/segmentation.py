@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from ..errors import InputRefused
-from ..geometry.voxel_pieces import edge_labels
+from ..geometry.voxel_runs import find_pieces
 from ..geometry.within_skin import within_skin
 from ..options import THRESHOLD
 from ..volume import Volume
@@ -172,6 +171,8 @@ def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDA
     >>> apply_threshold(np.array([399, 400, 1000, 1001]), 400, 1000)
     array([False,  True,  True, False])
     """
+    if hu.dtype.kind in "iu":  # whole numbers are compared as they are, not as floats
+        threshold = int(np.ceil(threshold))
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 
 
@@ -202,20 +203,17 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     >>> bool((drop_artefacts(frame | inside | beside) == frame | inside).all())
     True
     """
-    labels, n_parts = ndimage.label(mask)
-    if n_parts == 1:
+    parts = find_pieces(mask)
+    if parts.n_pieces == 1:
         return mask
-    part_of = labels[mask]
-    sizes = np.bincount(part_of, minlength=n_parts + 1)
-    boxes = ndimage.find_objects(labels)
-    large = [part for part in range(1, n_parts + 1) if sizes[part] >= min_part * sizes.max()]
+    large = parts.sizes >= min_part * parts.sizes.max()
 
     # the skull is large and encloses much; a couch plate encloses little
-    skull = max(large, key=lambda part: _n_voxels(boxes[part - 1]) * sizes[part])
-    keep = np.zeros(n_parts + 1, bool)
-    keep[[part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]] = True
-    kept = np.zeros_like(mask)
-    kept[mask] = keep[part_of]
+    start, stop = parts.boxes[:, 0], parts.boxes[:, 1]
+    skull = np.argmax(large * (stop - start).prod(axis=1) * parts.sizes)
+    inside = ((start[skull] <= (start + stop) / 2) & ((start + stop) / 2 <= stop[skull])).all(axis=1)
+    kept = mask.copy()
+    kept.ravel()[parts.places(~(large & inside))] = False
     return kept
 
 
@@ -241,23 +239,9 @@ def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.boo
     >>> fill_holes(mask, max_hole_px=4)[0, 2].astype(int)
     array([1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 1])
     """
-    return np.stack([plane | _small_holes(~plane, max_hole_px) for plane in mask])
-
-
-def _small_holes(free: NDArray[np.bool_], max_px: float) -> NDArray[np.bool_]:
-    """The enclosed pieces of what is free in a slice, up to a size; slice by slice, as labels take four bytes each."""
-    labels, n_pieces = ndimage.label(free)
-    small = np.bincount(labels.ravel(), minlength=n_pieces + 1) <= max_px
-    small[0] = False  # the bone itself
-    small[edge_labels(labels[None])] = False
-    return small[labels]
-
-
-def _n_voxels(box: tuple[slice, ...]) -> int:
-    """Voxels in a bounding box."""
-    return int(np.prod([side.stop - side.start for side in box]))
-
-
-def _is_inside(inner: tuple[slice, ...], outer: tuple[slice, ...]) -> bool:
-    """Whether the middle of one box lies within another."""
-    return all(o.start <= (i.start + i.stop) / 2 <= o.stop for i, o in zip(inner, outer, strict=True))
+    free = find_pieces(~mask, in_slices=True)
+    enclosed = np.ones(free.n_pieces, bool)
+    enclosed[free.piece[free.at_edge]] = False
+    filled = mask.copy()
+    filled.ravel()[free.places(enclosed & (free.sizes <= max_hole_px))] = True
+    return filled
