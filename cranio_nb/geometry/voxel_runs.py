@@ -114,23 +114,34 @@ def find_pieces(mask: NDArray[np.bool_], *, in_slices: bool = False) -> Runs:
     >>> find_pieces(mask).sizes, find_pieces(mask, in_slices=True).sizes
     (array([3, 4, 1]), array([3, 2, 2, 1]))
     """
-    n_planes, n_rows, n_cols = mask.shape
-    # a free column after each row, and a free row after each slice: a run ends there, and what follows is no neighbour
-    padded = np.zeros((n_planes, n_rows + 1, n_cols + 1), bool)
-    padded[:, :n_rows, :n_cols] = mask
-    flat = padded.ravel()
-    edges = np.flatnonzero(flat[1:] != flat[:-1]) + 1
-    if flat[:1].any():
-        edges = np.concatenate([[0], edges])
-    start, stop = edges[::2], edges[1::2]
+    start, stop = _starts_and_stops(mask)
 
     # runs are neighbours if one meets the other when it is moved on by a row, or by a slice
-    steps = (n_cols + 1,) if in_slices else (n_cols + 1, (n_rows + 1) * (n_cols + 1))
+    _, n_rows, n_cols = shape = mask.shape
+    row, plane = n_cols + 1, (n_rows + 1) * (n_cols + 1)
+    steps = (row,) if in_slices else (row, plane)
     pairs = np.concatenate([_meeting(start + step, stop + step, start, stop) for step in steps], axis=1)
     links = coo_array((np.ones(pairs.shape[1], bool), tuple(pairs)), shape=(len(start), len(start)))
     n_pieces, piece = connected_components(links, directed=False)
-    first = np.stack(np.unravel_index(start, padded.shape), axis=1)
-    return Runs((n_planes, n_rows, n_cols), first, stop - start, piece, int(n_pieces))
+    first = np.stack([start // plane, start % plane // row, start % row], axis=1)
+    return Runs((shape[0], n_rows, n_cols), first, stop - start, piece, int(n_pieces))
+
+
+def _starts_and_stops(mask: NDArray[np.bool_]) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """First place of each run and the one behind it: flat indices into slices of one more row and one more column.
+
+    Both stay free: a run ends there, and what follows is no neighbour.
+    """
+    _, n_rows, n_cols = mask.shape
+    # slice by slice in one small array, with a free place before it
+    flat = np.zeros(1 + (n_rows + 1) * (n_cols + 1), bool)
+    inside = flat[1:].reshape(n_rows + 1, n_cols + 1)[:n_rows, :n_cols]
+    edges = [np.empty(0, np.intp)]
+    for plane, own in enumerate(mask):
+        inside[:] = own
+        edges.append(np.flatnonzero(flat[1:] != flat[:-1]) + plane * (len(flat) - 1))
+    ends = np.concatenate(edges)
+    return ends[::2], ends[1::2]
 
 
 def _meeting(start: NDArray, stop: NDArray, other_start: NDArray, other_stop: NDArray) -> NDArray[np.intp]:
