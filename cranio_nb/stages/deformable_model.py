@@ -21,7 +21,8 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.linalg import cho_solve_banded, cholesky_banded
+from scipy.linalg import cholesky_banded
+from scipy.linalg.lapack import dpbtrs
 
 from ..curves import Balloon, Points, normals
 
@@ -187,7 +188,7 @@ def _solve_curves(factor: NDArray, right: NDArray[np.float64]) -> NDArray[np.flo
     n_free = right.shape[1]
     # a column for each coordinate of each curve, one after the other in memory as the solver takes them
     columns = right.transpose(0, 2, 1).reshape(-1, n_free).T
-    solved = cho_solve_banded((factor, True), columns, overwrite_b=True)
+    solved, _ = dpbtrs(factor, columns, lower=1, overwrite_b=1)  # what cho_solve_banded calls, after its checks
     return solved.T.reshape(-1, 2, n_free).transpose(0, 2, 1)
 
 
