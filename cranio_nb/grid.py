@@ -165,7 +165,8 @@ def _nearest(index: ArrayLike) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
 
 def _values(values: NDArray, at: NDArray[np.intp], outside: float) -> NDArray:
     """Values of elements, shape (...); element 0 stands in where there is none, and is replaced at the end."""
-    inside = np.logical_and.reduce([(i >= 0) & (i < n) for i, n in zip(at, values.shape, strict=True)])
+    # without its sign, what lies before the first element is a large number
+    inside = np.logical_and.reduce([i.view(np.uintp) < n for i, n in zip(at, values.shape, strict=True)])
     return np.where(inside, values[tuple(np.where(inside, i, 0) for i in at)], outside)
 
 

@@ -107,18 +107,18 @@ def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> Outermost
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / STEP_DEG))
     grid = RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1)
     directions = grid.directions
-    start, step = bone.to_voxel(grid.centre), bone.steps(directions).reshape(-1, 3)
-    radius, seen = np.full(len(step), np.nan), np.zeros(len(step))
+    start, step = bone.to_voxel(grid.centre)[:, None], np.ascontiguousarray(bone.steps(directions).reshape(-1, 3).T)
+    radius, seen = np.full(step.shape[1], np.nan), np.zeros(step.shape[1])
     # inwards, each ray up to the first bone it meets
-    left = np.arange(len(step))
+    left = np.arange(len(radius))
+    marked = bone.with_voxels(bone.voxels.view(np.int8))
     for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM)[::-1]:
-        index = start + length * step[left]
-        inside = inside_grid(index, bone.shape)
+        found = marked.at_index((start + length * step).T, outside=-1)
+        inside, met = found >= 0, found > 0
         seen[left[inside]] = np.maximum(seen[left[inside]], length)
-        met = np.zeros(len(left), bool)
-        met[inside] = bone.at_index(index[inside], outside=False)
-        radius[left[met]] = length
-        left = left[~met]
+        if met.any():
+            radius[left[met]] = length
+            left, step = left[~met], step[:, ~met]
     return OutermostBone(grid, radius.reshape(grid.n, grid.n), seen.reshape(grid.n, grid.n))
 
 
