@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.interpolate import RBFInterpolator
 
-from ..grid import inside_grid
 from ..volume import Volume
 from .orientation import head_centre
 from .ray_casting import FAR_MM, NEAR_MM
