@@ -41,7 +41,7 @@ _LIBRARIES = ("numpy", "scipy", "scikit-image", "pydicom", "nibabel", "pynrrd", 
 
 
 def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
-    """Design and measure; a thread loads what draws meanwhile, and draws while there are measures and files to make.
+    """Design and measure; a thread prepares to draw meanwhile, and draws while there are measures and files to make.
 
     Parameters
     ----------
@@ -62,14 +62,15 @@ def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
     """
     from ..drawing import figures
     from .design_page import measure_shots
-    from .design_pictures import shape_shots
+    from .design_pictures import shape_shots, vault_of
 
     drawn: Drawn = []
     painter = ThreadPoolExecutor(1)
     painter.submit(figures.new_figure, 1.0, 1.0)  # loads matplotlib
+    vault = painter.submit(vault_of, case)
 
     def begin(made: Prosthesis) -> None:
-        drawn.append(painter.submit(shape_shots, case, made))
+        drawn.append(painter.submit(lambda: shape_shots(case, vault.result(), made)))
 
     try:
         result = run_design(case, designed=begin, **options)

@@ -23,7 +23,7 @@ from ..pipeline.input_digest import case_label
 from ..pipeline.run import RunResult, parameters_used
 from ..prosthesis import DistanceStats
 from ..vault.verdict import rule_rows
-from .design_pictures import distance_shots, shape_shots
+from .design_pictures import distance_shots, shape_shots, vault_of
 from .error_pictures import error_shots, largest_errors
 from .pages import Shot, page_template
 
@@ -42,7 +42,7 @@ def page_shots(result: RunResult) -> dict[str, list[Shot]]:
     dict of str to list of Shot
         Name of a part of the page -> its pictures.
     """
-    return shape_shots(result.case, result.prosthesis) | measure_shots(result)
+    return shape_shots(result.case, vault_of(result.case), result.prosthesis) | measure_shots(result)
 
 
 def measure_shots(result: RunResult) -> dict[str, list[Shot]]:

@@ -11,7 +11,7 @@ from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
 from ..evaluation.against_truth import TruthCheck
 from ..evaluation.paper_tables import pick_slices
-from ..mesh import INNER, OUTER
+from ..mesh import INNER, OUTER, Mesh
 from ..methods.slicewise.slices import SlicedDesign, SliceResult
 from ..pipeline.preparation import Prepared
 from ..pipeline.run import RunResult
@@ -27,12 +27,29 @@ _BELOW_MM = 100.0  # shown of the scan below the head's centre
 _CROSSED = "the curves cross: do not trust the shape here"
 
 
-def shape_shots(case: Prepared, made: Prosthesis) -> dict[str, list[Shot]]:
+def vault_of(case: Prepared) -> Mesh:
+    """The skull as the views show it: coarse, and cut off above the face.
+
+    Parameters
+    ----------
+    case : Prepared
+
+    Returns
+    -------
+    Mesh
+        World mm.
+    """
+    return skull_surface(case.bone, lowest_shown(case.sizes, case.openings[0]))
+
+
+def shape_shots(case: Prepared, vault: Mesh, made: Prosthesis) -> dict[str, list[Shot]]:
     """All pictures that need no measures.
 
     Parameters
     ----------
     case : Prepared
+    vault : Mesh
+        Its `vault_of`.
     made : Prosthesis
         Designed for it.
 
@@ -43,23 +60,25 @@ def shape_shots(case: Prepared, made: Prosthesis) -> dict[str, list[Shot]]:
     """
     if made.patch is not None:  # once for all: no picture looks beyond the patch
         made = replace(made, patch=made.patch.crop(made.patch.box()))
-    return {"views": view_shots(case, made), "cuts": cut_shots(case, made), "slices": slice_shots(case, made)}
+    views = view_shots(case, vault, made.mesh)
+    return {"views": views, "cuts": cut_shots(case, made), "slices": slice_shots(case, made)}
 
 
-def view_shots(case: Prepared, made: Prosthesis) -> list[Shot]:
+def view_shots(case: Prepared, vault: Mesh, prosthesis: Mesh) -> list[Shot]:
     """Skull and prosthesis from three sides.
 
     Parameters
     ----------
     case : Prepared
-    made : Prosthesis
+    vault : Mesh
+        Its `vault_of`.
+    prosthesis : Mesh
+        World mm.
 
     Returns
     -------
     list of Shot
     """
-    # one coarse skull for all views, cut off above the face
-    skull = skull_surface(case.bone, lowest_shown(case.sizes, case.openings[0]))
     where = "; ".join(one.place for one in case.sizes)
     shots = []
     for name, towards in figures.views_of([one.direction for one in case.sizes]).items():
@@ -67,7 +86,7 @@ def view_shots(case: Prepared, made: Prosthesis) -> list[Shot]:
             f"Shaded view {name}: the vault of the skull in ivory and the prosthesis in blue, which closes the opening "
             f"({where}). Letters at the edges name the patient's sides; the scale bar is 50 mm."
         )
-        figure = figures.view_figure(skull, made.mesh, towards)
+        figure = figures.view_figure(vault, prosthesis, towards)
         shots.append(shot(figure, alt=alt, caption=_capital(name)))
     return shots
 
