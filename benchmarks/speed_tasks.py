@@ -95,9 +95,9 @@ def stages(source: str, method: str, out: str) -> Figures:
     files.write_json(Path(out) / "design.json", design_record(result))
     timed.lap("record")
     without = sum(timed.seconds.values())
-    from cranio_nb.output.design_page import report_page
+    from cranio_nb.output.design_page import page_shots, report_page
 
-    report_page(result)
+    report_page(result, page_shots(result))
     timed.lap("report")
     return timed.seconds | {"without report": without}
 

@@ -162,6 +162,14 @@ def test_the_package_itself_brings_its_reader_and_nothing_heavier_than_numpy():
     assert not loaded & {*HEAVY, "scipy", "skimage", "pydicom"}
 
 
+def test_matplotlib_is_loaded_with_the_first_figure():
+    code = (
+        "import sys, cranio_nb.output.design_page as p; assert 'matplotlib' not in sys.modules;"
+        "p.figures.new_figure(1.0, 1.0); assert 'matplotlib' in sys.modules"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
 def test_only_volume_and_the_readers_know_the_affine():
     """Everything else asks a `Volume`; in the exercises the learner writes the formula."""
     free = {"volume", "grid", "teaching.exercises.ct", "teaching.exercises.image"}

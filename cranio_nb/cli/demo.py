@@ -29,10 +29,9 @@ def demo(out: Path, size: str, head: str) -> None:
     from data_synth.files import write_case
 
     from ..output import comparison_folder
-    from ..output.design_folder import FILES, write_outputs
+    from ..output.design_folder import FILES, run_and_draw, write_outputs
     from ..output.staging import staged
     from ..pipeline.preparation import prepare
-    from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
     names = (*CASE, *FILES)
@@ -41,6 +40,6 @@ def demo(out: Path, size: str, head: str) -> None:
         progress("synthetic CT", 0.0)
         write_case(part, head_case(head, size, "unilateral", 0))
         case = prepare(part / "ct", truth=part / "truth.nii.gz", progress=progress)
-        result = run_design(case, progress=progress)
-        write_outputs(result, part, progress)
+        result, drawn = run_and_draw(case, progress=progress)
+        write_outputs(result, part, drawn, progress)
     print_result(result, out)

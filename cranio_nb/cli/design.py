@@ -53,10 +53,9 @@ def design(
       cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
       cranio-nb design scans/head_ct --params options.json --out out
     """
-    from ..output.design_folder import FILES, write_outputs
+    from ..output.design_folder import FILES, run_and_draw, write_outputs
     from ..output.staging import staged
     from ..pipeline.preparation import prepare
-    from ..pipeline.run import run_design
     from .console import print_result, progress_bar
 
     # everything that can be refused without reading the scan comes first
@@ -68,7 +67,7 @@ def design(
     check_writes(out, FILES, reads)
     with progress_bar() as progress, opening_checked():
         case = prepare(scan, opening=opening, planes=between, truth=truth, progress=progress, **how_read)
-        result = run_design(case, method=method, preset=preset, progress=progress, **options)
+        result, drawn = run_and_draw(case, method=method, preset=preset, progress=progress, **options)
         with staged(out, FILES) as part:
-            write_outputs(result, part, progress)
+            write_outputs(result, part, drawn, progress)
     print_result(result, out)

@@ -154,8 +154,9 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, s
     faces = np.concatenate([s.mesh.faces + at for s, at in zip(solids, starts[:-1], strict=True)])
     colours = np.concatenate([np.broadcast_to(s.colours, s.mesh.vertices.shape) for s in solids])
     # from mm to pixels
-    low = vertices[:, :2].min(axis=0) - _MARGIN_MM
-    width, height = np.ceil((vertices[:, :2].max(axis=0) + _MARGIN_MM - low) / px_mm).astype(int)
+    across = np.ascontiguousarray(vertices[:, :2].T)
+    low = across.min(axis=1) - _MARGIN_MM
+    width, height = np.ceil((across.max(axis=1) + _MARGIN_MM - low) / px_mm).astype(int)
     at = np.column_stack([(vertices[:, :2] - low) / px_mm, vertices[:, 2]])
     face, weight, depth = _scan(at, faces, int(height), int(width))
     # colours and normals between the corners of the face that is seen
@@ -177,26 +178,29 @@ def _scan(
 
     Each face that looks at the viewer is sampled at least once per pixel; the nearest sample of a pixel wins.
     """
-    # faces turned away are left out; the others get steps of less than a pixel along their longest edge
-    corners = at.astype(np.float32)[faces]
-    edge1, edge2 = corners[:, 1, :2] - corners[:, 0, :2], corners[:, 2, :2] - corners[:, 0, :2]
-    front = edge1[:, 0] * edge2[:, 1] - edge1[:, 1] * edge2[:, 0] < 0  # rows run down
-    longest = np.sqrt(np.maximum(np.maximum((edge1**2).sum(1), (edge2**2).sum(1)), ((edge1 - edge2) ** 2).sum(1)))
-    n_steps = np.where(front, np.clip(np.ceil(1.2 * longest), 1, _MOST_STEPS).astype(int), 0)
+    # faces turned away are left out; axes and corners lie first, so that all sums run along the faces
+    axes = np.ascontiguousarray(at.T, np.float32)
+    x, y, _ = places = np.stack([axis[faces.T] for axis in axes])
+    seen = np.flatnonzero((x[1] - x[0]) * (y[2] - y[0]) - (y[1] - y[0]) * (x[2] - x[0]) < 0)  # rows run down
+    corners = places.take(seen, axis=2)
+    # steps of less than a pixel along the longest edge
+    edges = corners[:2, [1, 2, 2]] - corners[:2, [0, 0, 1]]
+    longest = np.sqrt((edges[0] ** 2 + edges[1] ** 2).max(axis=0, initial=0))
+    n_steps = np.clip(np.ceil(1.2 * longest), 1, _MOST_STEPS).astype(int)
     # faces with equally many steps are sampled at once
     face = np.full(height * width, -1, np.int32)
     weight = np.zeros((height * width, 3), np.float32)
     depth = np.full(height * width, -np.inf, np.float32)
-    for n in np.unique(n_steps[front]):
+    for n in np.unique(n_steps):
         some = np.flatnonzero(n_steps == n)
         share = _shares(int(n))
         # sums of products written out: faster than einsum here, and the same on every machine, as those of BLAS are not
-        a, b, c = corners[some].transpose(1, 0, 2)[:, :, None]
-        sample = (share[:, 0, None] * a + share[:, 1, None] * b + share[:, 2, None] * c).reshape(-1, 3)
-        index = sample[:, 1].astype(np.int32) * width + sample[:, 0].astype(np.int32)
-        np.maximum.at(depth, index, sample[:, 2])
-        won = np.flatnonzero(sample[:, 2] == depth[index])
-        face[index[won]] = some[won // len(share)]
+        a, b, c = corners.take(some, axis=2).transpose(1, 0, 2)[..., None]
+        x, y, z = (share[:, 0] * a + share[:, 1] * b + share[:, 2] * c).reshape(3, -1)
+        index = y.astype(np.int32) * width + x.astype(np.int32)
+        np.maximum.at(depth, index, z)
+        won = np.flatnonzero(z == depth[index])
+        face[index[won]] = seen[some[won // len(share)]]
         weight[index[won]] = share[won % len(share)]
     shape = (height, width)
     return face.reshape(shape), weight.reshape(*shape, 3), depth.reshape(shape)

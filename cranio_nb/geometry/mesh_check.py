@@ -19,6 +19,7 @@ from .self_intersection import crossings
 
 _FACING = 30.0  # mm of distance that a wall's other side may cost before it need not face this side any more
 _WALL_SAMPLES = 20_000
+_LEAF = 64  # points of a cell of the search
 
 
 @dataclass(frozen=True)
@@ -171,11 +172,12 @@ def wall_thickness(mesh: Mesh) -> NDArray[np.float64]:
         search weighs a turn of 60 deg away from facing like 30 mm of distance.
     """
     # place and normal as one point of six numbers: the other side has the opposite normal
-    # in six dimensions plain cells, not shrunk around their points, are searched in half the time
-    tree = cKDTree(np.hstack([mesh.centres, _FACING * mesh.normals]), compact_nodes=False, balanced_tree=False)
+    # in six dimensions plain cells, not shrunk around their points, are searched in half the time; large ones, in less
+    centres, facing = mesh.centres, _FACING * mesh.normals
+    tree = cKDTree(np.hstack([centres, facing]), _LEAF, compact_nodes=False, balanced_tree=False)
     some = np.arange(0, len(mesh.faces), max(1, -(-len(mesh.faces) // _WALL_SAMPLES)))
-    _, other = tree.query(np.hstack([mesh.centres[some], -_FACING * mesh.normals[some]]))
-    return np.linalg.norm(mesh.centres[other] - mesh.centres[some], axis=1)
+    _, other = tree.query(np.hstack([centres[some], -facing[some]]))
+    return np.linalg.norm(centres[other] - centres[some], axis=1)
 
 
 def _unclear_faces(mesh: Mesh) -> NDArray[np.bool_]:
@@ -185,9 +187,10 @@ def _unclear_faces(mesh: Mesh) -> NDArray[np.bool_]:
     area = np.zeros(len(mesh.faces))
     area[finite] = Mesh(mesh.vertices, mesh.faces[finite]).areas
     # the same three corners as an earlier face, in whatever order
-    _, first = np.unique(np.sort(mesh.faces, axis=1), axis=0, return_index=True)
-    again = np.ones(len(mesh.faces), bool)
-    again[first] = False
+    corners = np.sort(mesh.faces, axis=1)
+    order = np.lexsort(corners.T)
+    again = np.zeros(len(mesh.faces), bool)
+    again[order[1:]] = (corners[order[1:]] == corners[order[:-1]]).all(axis=1)
     return ~(area > 0) | again
 
 

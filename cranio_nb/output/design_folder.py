@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from importlib.metadata import PackageNotFoundError, version
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ..evaluation.paper_tables import balloon_ranges, count_statuses
 from ..geometry.mesh_check import MeshReport, check_mesh
@@ -19,7 +19,8 @@ from ..grid import AxisOrder
 from ..implant.mass import weigh_implant
 from ..methods.catalogue import default_options, method_names
 from ..pipeline.input_digest import case_label
-from ..pipeline.run import RunResult
+from ..pipeline.preparation import Prepared
+from ..pipeline.run import RunResult, run_design
 from ..prosthesis import Prosthesis
 from ..readers import LoadReport
 from . import files
@@ -29,12 +30,62 @@ from .mesh_files import write_mesh
 from .nifti_files import write_nifti
 from .staging import staged
 
+if TYPE_CHECKING:
+    from .pages import Shot
+
+    Drawn = list[Future[dict[str, list[Shot]]]]
+
 FILES = ("prosthesis.stl", "patch.nii.gz", "design.json", "report.html")
 """What a run leaves in its folder."""
 _LIBRARIES = ("numpy", "scipy", "scikit-image", "pydicom", "nibabel", "pynrrd", "trimesh", "manifold3d")
 
 
-def write_outputs(result: RunResult, folder: Path, progress: Callable[[str, float], None] | None = None) -> None:
+def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
+    """Design and measure; a thread prepares to draw meanwhile, and draws while there are measures and files to make.
+
+    Parameters
+    ----------
+    case : Prepared
+    **options
+        As for `run_design`.
+
+    Returns
+    -------
+    RunResult
+    list of Future
+        Promises of its `design_page.page_shots`, for `write_outputs`.
+
+    Raises
+    ------
+    InputRefused, NoOpening
+        As `run_design`.
+    """
+    from ..drawing import figures
+    from .design_page import measure_shots
+    from .design_pictures import shape_shots, vault_of
+
+    drawn: Drawn = []
+    painter = ThreadPoolExecutor(1)
+    painter.submit(figures.new_figure, 1.0, 1.0)  # loads matplotlib
+    vault = painter.submit(vault_of, case)
+
+    def begin(made: Prosthesis) -> None:
+        drawn.append(painter.submit(lambda: shape_shots(case, vault.result(), made)))
+
+    try:
+        result = run_design(case, designed=begin, **options)
+        drawn.append(painter.submit(measure_shots, result))
+    finally:
+        painter.shutdown(wait=False)
+    return result, drawn
+
+
+def write_outputs(
+    result: RunResult,
+    folder: Path,
+    drawn: Drawn,
+    progress: Callable[[str, float], None] | None = None,
+) -> None:
     """Write the `FILES` of a run.
 
     Parameters
@@ -42,6 +93,8 @@ def write_outputs(result: RunResult, folder: Path, progress: Callable[[str, floa
     result : RunResult
     folder : Path
         Must be there; usually the one from `staging.staged`.
+    drawn : list of Future
+        Promises of its pictures, from `run_and_draw`.
     progress : callable, optional
         Called with (step, fraction of the whole).
 
@@ -50,19 +103,18 @@ def write_outputs(result: RunResult, folder: Path, progress: Callable[[str, floa
     CannotWrite
         If the mesh is not a solid, or a file cannot be written.
     """
-    from .design_page import report_page  # loads what draws
+    from .design_page import report_page
 
     progress = progress or (lambda step, done: None)
     progress("writing", 0.85)
-    # packing, digests and the disk leave the processor to the pictures, which are drawn meanwhile
+    # packing and the disk leave the processor to the digests and to the pictures, which are drawn meanwhile
     with ThreadPoolExecutor(1) as beside:
         shapes = beside.submit(_write_shapes, result.prosthesis, folder, result.mesh, result.case.load.order)
-        record = beside.submit(lambda: files.write_json(folder / "design.json", design_record(result)))
+        files.write_json(folder / "design.json", design_record(result))
         progress("report", 0.92)
-        page = report_page(result)
-        for written in (shapes, record):
-            written.result()  # or what kept it from being written
-    files.write_text(folder / "report.html", page)
+        shots = {name: some for part in drawn for name, some in part.result().items()}
+        files.write_text(folder / "report.html", report_page(result, shots))
+        shapes.result()  # or what kept it from being written
     progress("done", 1.0)
 
 

@@ -5,6 +5,7 @@ The page holds no text of the input's headers and no path. Everything is escaped
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -22,19 +23,51 @@ from ..pipeline.input_digest import case_label
 from ..pipeline.run import RunResult, parameters_used
 from ..prosthesis import DistanceStats
 from ..vault.verdict import rule_rows
-from .design_pictures import cut_shots, distance_shots, slice_shots, view_shots
+from .design_pictures import distance_shots, shape_shots, vault_of
 from .error_pictures import error_shots, largest_errors
-from .pages import page_template
+from .pages import Shot, page_template
 
 _NAMES = {"theta0": "θ₀ (degrees)", "theta1": "θ₁ (degrees)", "n_iter": "Steps of the balloon"}
 
 
-def report_page(result: RunResult) -> str:
+def page_shots(result: RunResult) -> dict[str, list[Shot]]:
+    """All pictures of a run.
+
+    Parameters
+    ----------
+    result : RunResult
+
+    Returns
+    -------
+    dict of str to list of Shot
+        Name of a part of the page -> its pictures.
+    """
+    return shape_shots(result.case, vault_of(result.case), result.prosthesis) | measure_shots(result)
+
+
+def measure_shots(result: RunResult) -> dict[str, list[Shot]]:
+    """The pictures that show measures.
+
+    Parameters
+    ----------
+    result : RunResult
+
+    Returns
+    -------
+    dict of str to list of Shot
+        "distances" and "errors"; both are empty without a truth.
+    """
+    return {"distances": distance_shots(result), "errors": error_shots(result, largest_errors(result))}
+
+
+def report_page(result: RunResult, shots: Mapping[str, Sequence[Shot]]) -> str:
     """The page of a run.
 
     Parameters
     ----------
     result : RunResult
+    shots : dict of str to sequence of Shot
+        Its `page_shots`.
 
     Returns
     -------
@@ -43,7 +76,7 @@ def report_page(result: RunResult) -> str:
     """
     # only slice methods record slices; without them their tables are left out
     made = result.prosthesis
-    slices, errors = made.record.get("slices", []), largest_errors(result)
+    slices = made.record.get("slices", [])
     return page_template("design_page.html").render(
         version=version("cranio-nb"),
         label=case_label(result.case.digests["scan"]),
@@ -56,14 +89,14 @@ def report_page(result: RunResult) -> str:
         statuses=STATUSES,
         implant=weigh_implant(made.mesh),
         rule=rule_rows(),
-        views=view_shots(result),
-        cuts=cut_shots(result),
-        pictures=slice_shots(result),
+        views=shots["views"],
+        cuts=shots["cuts"],
+        pictures=shots["slices"],
         balloons=balloon_tables(result),
-        distances=distance_shots(result),
+        distances=shots["distances"],
         table3=distance_table(result),
-        errors=errors,
-        error_pictures=error_shots(result, errors),
+        errors=largest_errors(result),
+        error_pictures=shots["errors"],
         design_line=figures.line_style(0)[0],
         colours=palette,
         directions=_n_directions(result),

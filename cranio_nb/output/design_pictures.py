@@ -1,6 +1,8 @@
-"""A finished run -> the pictures of its page, each with words beside it."""
+"""A design -> the pictures of its page, each with words beside it."""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +11,11 @@ from ..drawing import figures
 from ..drawing.coarse_skull import skull_surface
 from ..evaluation.against_truth import TruthCheck
 from ..evaluation.paper_tables import pick_slices
-from ..mesh import INNER, OUTER
+from ..mesh import INNER, OUTER, Mesh
 from ..methods.slicewise.slices import SlicedDesign, SliceResult
 from ..pipeline.preparation import Prepared
 from ..pipeline.run import RunResult
+from ..prosthesis import Prosthesis
 from ..volume import Volume
 from .pages import Shot, lowest_shown, shot
 
@@ -24,45 +27,84 @@ _BELOW_MM = 100.0  # shown of the scan below the head's centre
 _CROSSED = "the curves cross: do not trust the shape here"
 
 
-def view_shots(result: RunResult) -> list[Shot]:
+def vault_of(case: Prepared) -> Mesh:
+    """The skull as the views show it: coarse, and cut off above the face.
+
+    Parameters
+    ----------
+    case : Prepared
+
+    Returns
+    -------
+    Mesh
+        World mm.
+    """
+    return skull_surface(case.bone, lowest_shown(case.sizes, case.openings[0]))
+
+
+def shape_shots(case: Prepared, vault: Mesh, made: Prosthesis) -> dict[str, list[Shot]]:
+    """All pictures that need no measures.
+
+    Parameters
+    ----------
+    case : Prepared
+    vault : Mesh
+        Its `vault_of`.
+    made : Prosthesis
+        Designed for it.
+
+    Returns
+    -------
+    dict of str to list of Shot
+        "views", "cuts" and "slices".
+    """
+    if made.patch is not None:  # once for all: no picture looks beyond the patch
+        made = replace(made, patch=made.patch.crop(made.patch.box()))
+    views = view_shots(case, vault, made.mesh)
+    return {"views": views, "cuts": cut_shots(case, made), "slices": slice_shots(case, made)}
+
+
+def view_shots(case: Prepared, vault: Mesh, prosthesis: Mesh) -> list[Shot]:
     """Skull and prosthesis from three sides.
 
     Parameters
     ----------
-    result : RunResult
+    case : Prepared
+    vault : Mesh
+        Its `vault_of`.
+    prosthesis : Mesh
+        World mm.
 
     Returns
     -------
     list of Shot
     """
-    # one coarse skull for all views, cut off above the face
-    skull = skull_surface(result.case.bone, lowest_shown(result.case.sizes, result.case.openings[0]))
-    where = "; ".join(one.place for one in result.case.sizes)
+    where = "; ".join(one.place for one in case.sizes)
     shots = []
-    for name, towards in figures.views_of([one.direction for one in result.case.sizes]).items():
+    for name, towards in figures.views_of([one.direction for one in case.sizes]).items():
         alt = (
             f"Shaded view {name}: the vault of the skull in ivory and the prosthesis in blue, which closes the opening "
             f"({where}). Letters at the edges name the patient's sides; the scale bar is 50 mm."
         )
-        figure = figures.view_figure(skull, result.prosthesis.mesh, towards)
+        figure = figures.view_figure(vault, prosthesis, towards)
         shots.append(shot(figure, alt=alt, caption=_capital(name)))
     return shots
 
 
-def cut_shots(result: RunResult) -> list[Shot]:
+def cut_shots(case: Prepared, made: Prosthesis) -> list[Shot]:
     """The scan with the patch in an axial, a coronal and a sagittal cut through each opening.
 
     Parameters
     ----------
-    result : RunResult
+    case : Prepared
+    made : Prosthesis
 
     Returns
     -------
     list of Shot
         Three of each opening that is closed, the largest first.
     """
-    case, patch = result.case, result.prosthesis.patch
-    corners, what = _shown_corners(case), "CT" if case.load.kind == "ct" else "bone mask"
+    patch, corners, what = made.patch, _shown_corners(case), "CT" if case.load.kind == "ct" else "bone mask"
     shots = []
     for one in case.closed:
         place = _place_in(one.opening.sheet if patch is None else patch, one.opening.centre)
@@ -102,12 +144,13 @@ def _position(case: Prepared, name: str, place: NDArray[np.float64]) -> str:
     return f"{'xyz'[axis]} {place[axis]:.0f} mm"
 
 
-def slice_shots(result: RunResult) -> list[Shot]:
+def slice_shots(case: Prepared, made: Prosthesis) -> list[Shot]:
     """A few slices of each opening, in the first direction it was cut along, with all that was done in them.
 
     Parameters
     ----------
-    result : RunResult
+    case : Prepared
+    made : Prosthesis
 
     Returns
     -------
@@ -115,10 +158,9 @@ def slice_shots(result: RunResult) -> list[Shot]:
         `N_SLICES` in all, two of each opening at least, and one more where curves cross in other directions only;
         empty for a method without slices.
     """
-    made = result.prosthesis
     skeleton = bool(made.parameters.get("axial", False))
     sliced = [part for part in made.working if isinstance(part, SlicedDesign)]
-    by_opening = [[part for part in sliced if part.opening is one] for one in result.case.openings]
+    by_opening = [[part for part in sliced if part.opening is one] for one in case.openings]
     shots = []
     for number, parts in enumerate(by_opening, 1):
         of = f"opening {number}, " if len(by_opening) > 1 else ""
@@ -126,7 +168,7 @@ def slice_shots(result: RunResult) -> list[Shot]:
             part, s = parts[direction], parts[direction].slices[i]
             turned = f"direction {direction + 1}, " if direction else ""
             title = f"{of}{turned}slice {i + 1} of {len(part.slices)}"
-            figure = figures.slice_figure(part, s, result.case.bone, made.patch, skeleton=skeleton)
+            figure = figures.slice_figure(part, s, case.bone, made.patch, skeleton=skeleton)
             shots.append(shot(figure, alt=_slice_alt(title, s), caption=_slice_caption(title, s)))
     return shots
 

@@ -5,7 +5,7 @@ For the command line, notebooks and studies; nothing is written here (see `outpu
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from typing import Any
@@ -71,6 +71,7 @@ def run_design(
     method: str = "slicewise",
     preset: str = "default",
     progress: Progress | None = None,
+    designed: Callable[[Prosthesis], None] | None = None,
     **options: Any,
 ) -> RunResult:
     """Design what closes the openings of a scan, and measure it.
@@ -83,6 +84,8 @@ def run_design(
         As for `design`.
     progress : callable, optional
         Called with (step, fraction of the whole run, of which `prepare` is the first 0.4).
+    designed : callable, optional
+        Called with the prosthesis before it is measured: its pictures may begin.
 
     Returns
     -------
@@ -118,6 +121,8 @@ def run_design(
     )
     check_patch(made, case.openings)
     clock.lap("design")
+    if designed is not None:
+        designed(made)
     report("measuring", 0.8)
     return _measured(case, preset, made, clock)
 

@@ -16,7 +16,7 @@ from cranio_nb.cli import compare as compare_command
 from cranio_nb.cli import console, phantom
 from cranio_nb.output import comparison_folder, design_folder
 from cranio_nb.output.manifest import read_manifest
-from cranio_nb.pipeline import compare, preparation, run
+from cranio_nb.pipeline import compare, preparation
 from cranio_nb.prior import file as prior_file
 from cranio_nb.prior import learning, study
 from cranio_nb.teaching import build
@@ -47,7 +47,7 @@ def no_work(monkeypatch):
         return written
 
     for module, name, stand_in in (
-        (run, "run_design", lambda *a, **k: Made()),
+        (design_folder, "run_and_draw", lambda *a, **k: (Made(), [])),
         (preparation, "prepare", lambda *a, **k: Made()),
         (compare, "compare", lambda *a, **k: Made()),
         (compare_command, "_print", lambda *a: None),

@@ -1,13 +1,16 @@
 """Commands as a user runs them, and what a refusal looks like."""
 
 import hashlib
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from click.testing import CliRunner, Result
 
 from cranio_nb.cli.main import main
+from cranio_nb.output import design_folder
 from cranio_nb.pipeline import preparation, run
+from cranio_nb.prosthesis import Prosthesis
 
 OUTPUTS = {"prosthesis.stl", "patch.nii.gz", "design.json", "report.html", "manifest.json"}
 
@@ -19,8 +22,13 @@ def cranio(*arguments: object) -> Result:
 
 def run_is(result: run.RunResult, monkeypatch: pytest.MonkeyPatch) -> None:
     """Let commands find this result, where only the writing is looked at."""
+
+    def found(*_: object, designed: Callable[[Prosthesis], None], **__: object) -> run.RunResult:
+        designed(result.prosthesis)
+        return result
+
     monkeypatch.setattr(preparation, "prepare", lambda *a, **k: result.case)
-    monkeypatch.setattr(run, "run_design", lambda *a, **k: result)
+    monkeypatch.setattr(design_folder, "run_design", found)
 
 
 def digest(folder: Path) -> dict[str, str]:

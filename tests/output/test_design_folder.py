@@ -1,6 +1,7 @@
 """A design saved is the design again, on the scan's own grid; all of its files or none."""
 
 import json
+import threading
 
 import nibabel
 import numpy as np
@@ -8,12 +9,12 @@ import pytest
 import trimesh
 from cli_runs import digest
 
-from cranio_nb.errors import CannotWrite
+from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.methods.design import design
-from cranio_nb.output import design_folder, files
-from cranio_nb.output.design_folder import made_record, save
+from cranio_nb.output import design_folder, design_pictures, files
+from cranio_nb.output.design_folder import made_record, run_and_draw, save
+from cranio_nb.output.staging import staged
 from cranio_nb.pipeline.preparation import prepare
-from cranio_nb.pipeline.run import run_design
 from cranio_nb.prosthesis import Prosthesis
 from cranio_nb.readers import read_ct
 from cranio_nb.volume import Volume
@@ -115,12 +116,35 @@ def test_a_folder_that_is_in_the_way_is_refused_before_the_mesh_is_checked(made,
 
 def test_a_run_saved_by_name_is_what_the_run_writes(phantom, tmp_path):
     write_case(tmp_path, phantom())
-    result = run_design(prepare(tmp_path / "ct"), method="hull")
+    result, drawn = run_and_draw(prepare(tmp_path / "ct"), method="hull")
     (tmp_path / "run").mkdir()
-    design_folder.write_outputs(result, tmp_path / "run")
+    design_folder.write_outputs(result, tmp_path / "run", drawn)
     save(result.prosthesis, tmp_path / "saved", result.case.load)
     run, saved = digest(tmp_path / "run"), digest(tmp_path / "saved")
     assert set(run) ^ set(saved) == {"report.html", "manifest.json"}
     assert all(run[name] == saved[name] for name in ("prosthesis.stl", "patch.nii.gz"))
     records = [json.loads((tmp_path / name / "design.json").read_text()) for name in ("run", "saved")]
     assert all(records[0][key] == records[1][key] for key in made_record(result.prosthesis))
+
+
+def test_pictures_that_cannot_be_drawn_leave_nothing_behind(phantom, tmp_path, monkeypatch):
+    def fail(*_):
+        raise MemoryError("no room for pictures")
+
+    monkeypatch.setattr(design_pictures, "shape_shots", fail)
+    write_case(tmp_path, phantom())
+    result, drawn = run_and_draw(prepare(tmp_path / "ct"), method="hull")
+    with pytest.raises(MemoryError, match="no room"), staged(tmp_path / "out") as part:
+        design_folder.write_outputs(result, part, drawn)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_refused_design_leaves_no_thread_behind(phantom, tmp_path):
+    write_case(tmp_path, phantom())
+    before = threading.active_count()
+    with pytest.raises(InputRefused, match="sheet"):
+        run_and_draw(prepare(tmp_path / "ct"), method="sheet")
+    for thread in set(threading.enumerate()) - {threading.main_thread()}:
+        if thread.name.startswith("ThreadPoolExecutor"):
+            thread.join()
+    assert threading.active_count() <= before

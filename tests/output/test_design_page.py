@@ -13,9 +13,13 @@ from cranio_nb.pipeline.run import RunResult
 from cranio_nb.readers import Finding
 
 
+def page_of(result) -> str:
+    return design_page.report_page(result, design_page.page_shots(result))
+
+
 @pytest.fixture(scope="module")
 def html(result) -> str:
-    return design_page.report_page(result)
+    return page_of(result)
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +69,7 @@ def test_own_defaults_are_not_set_beside_the_paper(result):
 
 
 def test_page_without_truth_or_slices(bare):
-    page = Page(design_page.report_page(bare))
+    page = Page(page_of(bare))
     views, cuts = 3, 3
     assert (
         len(page.all("img")) == views + cuts
@@ -76,7 +80,7 @@ def test_page_without_truth_or_slices(bare):
 
 def test_markup_in_findings_is_shown_not_run(bare):
     evil = Finding("Evil", "warning", "<script>alert('x')</script>&\"")
-    text = design_page.report_page(dataclasses.replace(bare, findings=(evil,)))
+    text = page_of(dataclasses.replace(bare, findings=(evil,)))
     assert "<script" not in text and "&lt;script&gt;" in text
     assert "<script>alert('x')</script>&\"" in Page(text).text
 
@@ -87,7 +91,7 @@ def test_two_reports_can_be_told_apart(page, result, bare):
     label = f"Case {digests['scan'][:4]}-{digests['scan'][4:8]}, {result.finished:%Y-%m-%d %H:%M} UTC."
     assert label in page.text
     later = dataclasses.replace(bare, finished=result.finished + datetime.timedelta(days=1))
-    assert label not in Page(design_page.report_page(later)).text
+    assert label not in Page(page_of(later)).text
 
 
 def test_the_largest_errors_stand_where_they_are(page, result):
@@ -104,7 +108,7 @@ def test_no_slice_is_distrusted_without_a_reason(page, result):
 def test_crossed_curves_are_counted_shown_and_not_trusted(crossed):
     sliced = crossed.prosthesis.working[0]
     n_crossed, n = sum(len(s.crossings) > 0 for s in sliced.slices), len(sliced.slices)
-    page = Page(design_page.report_page(crossed))
+    page = Page(page_of(crossed))
     assert n_crossed == 2 and f"Slices with crossed curves {n_crossed} of {n}" in page.text
     assert f"Do not trust every slice: in {n_crossed} of {n}" in page.text
     assert f"Curves cross in {n_crossed}." in page.text

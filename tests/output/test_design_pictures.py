@@ -8,12 +8,14 @@ from cranio_nb.output import design_pictures
 
 
 def test_the_first_view_faces_the_opening(result):
-    captions = [shot.caption for shot in design_pictures.view_shots(result)]
+    vault = design_pictures.vault_of(result.case)
+    found = design_pictures.view_shots(result.case, vault, result.prosthesis.mesh)
+    captions = [shot.caption for shot in found]
     assert captions[0] == "Facing the opening" and len(captions) == 3 and "From the left" in captions
 
 
 def test_slices_say_how_they_were_filled(result):
-    shots = design_pictures.slice_shots(result)
+    shots = design_pictures.slice_shots(result.case, result.prosthesis)
     assert len(shots) == design_pictures.N_SLICES
     own = [shot for shot in shots if "outer: θ₀" in shot.caption]
     assert own and all("inner: θ₀" in shot.caption and "blue" in shot.alt for shot in own)
@@ -35,11 +37,11 @@ def test_the_scale_ends_at_a_round_number_above_nearly_all(result):
 
 def test_without_a_truth_or_slices_there_is_nothing_to_show(result):
     bare = dataclasses.replace(result, truth=None, prosthesis=dataclasses.replace(result.prosthesis, working=()))
-    assert design_pictures.distance_shots(bare) == design_pictures.slice_shots(bare) == []
+    assert design_pictures.distance_shots(bare) == design_pictures.slice_shots(bare.case, bare.prosthesis) == []
 
 
 def test_the_scan_is_shown_in_three_planes_through_the_patch(result):
-    shots = design_pictures.cut_shots(result)
+    shots = design_pictures.cut_shots(result.case, result.prosthesis)
     assert [shot.caption.split(" cut")[0] for shot in shots] == ["Axial", "Coronal", "Sagittal"]
     assert all("CT" in shot.alt and "scale bar is 50 mm" in shot.alt and "left" in shot.alt for shot in shots)
     place = design_pictures._place_in(result.prosthesis.patch, result.case.openings[0].centre)
@@ -57,7 +59,7 @@ def test_all_bone_above_the_face_is_in_the_cuts(result):
 
 
 def test_a_slice_whose_curves_cross_is_shown_and_named(crossed):
-    shots = design_pictures.slice_shots(crossed)
+    shots = design_pictures.slice_shots(crossed.case, crossed.prosthesis)
     told = [shot for shot in shots if "do not trust" in shot.caption]
     assert told and all("crosses mark where" in shot.alt for shot in told)
     first, *rest = crossed.prosthesis.working

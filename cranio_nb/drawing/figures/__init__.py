@@ -1,13 +1,14 @@
 """Designs -> figures: slices with their curves, outlines, shaded views, distance maps.
 
 Every picture has a scale bar in mm; lines that cross differ in style as well as in colour. `axes` is the only importer
-of matplotlib, and no figure touches any global state.
+of matplotlib, which the first figure loads, and no figure touches any global state.
 """
 
+from typing import TYPE_CHECKING, Any
+
+from . import axes
 from .axes import (
     DPI,
-    Axes,
-    Figure,
     colour_bar_figure,
     colour_scale,
     fill_mask,
@@ -36,6 +37,9 @@ from .panels import (
 )
 from .slices import draw_curves, draw_slice, show_areas, show_frame, slice_figure
 from .views import distance_figure, view_figure, views_of
+
+if TYPE_CHECKING:
+    from .axes import Axes, Figure
 
 __all__ = [
     "CUTS",
@@ -77,3 +81,8 @@ __all__ = [
     "view_panel",
     "views_of",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """The two types, which load matplotlib when they are asked for."""
+    return getattr(axes, name)

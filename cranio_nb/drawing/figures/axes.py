@@ -1,24 +1,38 @@
 """Figures with one axis, and what every picture has: scale bar, letters, masks, colour scale.
 
-The only importer of matplotlib; figures are made without any global state.
+The only importer of matplotlib, which it loads with the first figure; figures are made without any global state.
 """
 
 from __future__ import annotations
 
 import io
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
-from matplotlib.patheffects import AbstractPathEffect, withStroke
 from numpy.typing import NDArray
 
 from ..palette import BLACK, WHITE, rgb_shares, side_letter
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.figure import Figure
+    from matplotlib.patheffects import AbstractPathEffect
+
 DPI = 110
+
+
+def __getattr__(name: str) -> Any:
+    """The two types that callers name, loaded when they are asked for."""
+    if name == "Axes":
+        from matplotlib.axes import Axes
+
+        return Axes
+    if name == "Figure":
+        from matplotlib.figure import Figure
+
+        return Figure
+    raise AttributeError(f"{__name__} has no {name}")
 
 
 def new_figure(width_in: float, height_in: float) -> tuple[Figure, Axes]:
@@ -41,8 +55,7 @@ def new_figure(width_in: float, height_in: float) -> tuple[Figure, Axes]:
     >>> ax.get_window_extent().size.tolist()
     [330.0, 220.0]
     """
-    figure = Figure(figsize=(width_in, height_in), dpi=DPI)
-    FigureCanvasAgg(figure)
+    figure = _empty_figure(width_in, height_in)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     return figure, axes
@@ -60,7 +73,15 @@ def laid_out_figure(width_in: float, height_in: float) -> Figure:
     -------
     Figure
     """
-    figure = Figure(figsize=(width_in, height_in), dpi=DPI, layout="constrained")
+    return _empty_figure(width_in, height_in, layout="constrained")
+
+
+def _empty_figure(width_in: float, height_in: float, **options: Any) -> Figure:
+    """A figure without axes that no window knows."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), dpi=DPI, **options)
     FigureCanvasAgg(figure)
     return figure
 
@@ -144,6 +165,8 @@ def rim(colour: str, width: float = 2.5) -> list[AbstractPathEffect]:
     list of AbstractPathEffect
         Black around white lines, white around others.
     """
+    from matplotlib.patheffects import withStroke
+
     return [withStroke(linewidth=width, foreground=BLACK if colour == WHITE else WHITE)]
 
 
@@ -226,6 +249,9 @@ def colour_scale(top: float) -> ScalarMappable:
     >>> colour_scale(2.0).to_rgba([0.0, 2.0, 9.0]).round(1).tolist()
     [[0.0, 0.1, 0.3, 1.0], [1.0, 0.9, 0.2, 1.0], [1.0, 0.9, 0.2, 1.0]]
     """
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
     return ScalarMappable(Normalize(0.0, top), "cividis")
 
 
@@ -243,8 +269,7 @@ def colour_bar_figure(top_mm: float, label: str) -> Figure:
     -------
     Figure
     """
-    figure = Figure(figsize=(3.6, 0.62), dpi=DPI)
-    FigureCanvasAgg(figure)
+    figure = _empty_figure(3.6, 0.62)
     axes = figure.add_axes((0.05, 0.62, 0.9, 0.26))
     bar = figure.colorbar(colour_scale(top_mm), cax=axes, orientation="horizontal", extend="max")
     bar.ax.tick_params(labelsize=8)

@@ -6,13 +6,18 @@ that the patient's left is to the right; the sagittal one is seen from the left,
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from ...volume import Volume
 from ..palette import ORANGE, PATCH, PROSTHESIS, WHITE, rgb_shares
-from .axes import Figure, name_sides, scale_bar, show_pixels
+from .axes import name_sides, scale_bar, show_pixels
+
+if TYPE_CHECKING:
+    from .axes import Figure
 
 CUTS = {
     "axial": ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0)),

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..palette import BLACK, BLUE, PALE, WHITE
-from .axes import Figure, laid_out_figure
+from .axes import laid_out_figure
+
+if TYPE_CHECKING:
+    from .axes import Figure
 
 _PER_ROW = 4
 _PANEL_IN = (2.5, 2.0)

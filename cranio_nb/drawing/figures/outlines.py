@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,7 +12,10 @@ from scipy import ndimage
 from ...vault import slicing
 from ...volume import Volume
 from ..palette import BLACK, BLUE, BONE, GREEN, MIDDLE_GREY, ORANGE, PURPLE, TRUTH, VERMILLION, faded
-from .axes import Figure, fill_mask, name_sides, new_figure, scale_bar
+from .axes import fill_mask, name_sides, new_figure, scale_bar
+
+if TYPE_CHECKING:
+    from .axes import Figure
 
 _COLOURS = (BLUE, VERMILLION, GREEN, PURPLE, BLACK, ORANGE, MIDDLE_GREY)
 _DASHES: tuple[tuple[float, ...], ...] = (

@@ -7,7 +7,7 @@ along the view's axes to the right and down.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,7 +16,10 @@ from ...volume import Volume
 from ..canvas import round_length
 from ..palette import BLACK, MIDDLE_GREY
 from ..shading import Picture, Solid, render, view_axes
-from .axes import Axes, Figure, fill_mask, laid_out_figure, name_sides, rim, scale_bar
+from .axes import fill_mask, laid_out_figure, name_sides, rim, scale_bar
+
+if TYPE_CHECKING:
+    from .axes import Axes, Figure
 
 _SMALL_PT = 9.0
 _BAR_SHARE = 0.3  # most of a picture's width that a scale bar takes

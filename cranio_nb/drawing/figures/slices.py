@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -11,7 +13,10 @@ from ...stages import feature_extraction
 from ...vault import slicing
 from ...volume import Volume
 from ..palette import BLACK, BONE, INNER, OUTER, PATCH, TANGENT
-from .axes import Axes, Figure, fill_mask, name_sides, new_figure, scale_bar
+from .axes import fill_mask, name_sides, new_figure, scale_bar
+
+if TYPE_CHECKING:
+    from .axes import Axes, Figure
 
 _COLOURS, _SIDES = (OUTER, INNER), ("outer", "inner")
 _PIXEL_MM = 0.35

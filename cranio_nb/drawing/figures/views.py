@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,7 +11,10 @@ from numpy.typing import ArrayLike, NDArray
 from ...mesh import Mesh
 from ..palette import NO_VALUE, PROSTHESIS, SKULL, rgb_shares
 from ..shading import Picture, Solid, render, view_axes
-from .axes import Axes, Figure, colour_scale, name_sides, ring_place, scale_bar, show_pixels
+from .axes import colour_scale, name_sides, ring_place, scale_bar, show_pixels
+
+if TYPE_CHECKING:
+    from .axes import Axes, Figure
 
 SIDES = {
     "from the left": (1.0, 0.0, 0.0),
