@@ -44,8 +44,9 @@ def crossings(mesh: Mesh) -> NDArray[np.intp]:
     first, last = _ranges_of_cells(lo, hi)
     pairs = _near_pairs(lo, hi, first, *_boxes_in_cells(first, last))
     flat = np.ones(len(pairs), bool)
+    places, normals = np.ascontiguousarray(corners.T), np.ascontiguousarray(mesh.normals.T)
     for this, other in ((0, 1), (1, 0)):
-        pierced, level = _against_plane(corners, mesh.normals, touch, pairs[:, this], pairs[:, other])
+        pierced, level = _against_plane(places, normals, touch, pairs[:, this], pairs[:, other])
         pairs, flat = pairs[pierced | level], (flat & level)[pierced | level]
     # the other axes: in space the products of two edges, in a common plane the normals of the edges
     space, plane = pairs[~flat], pairs[flat]
@@ -103,11 +104,17 @@ def _near_pairs(
 
 
 def _against_plane(
-    corners: NDArray, normals: NDArray, touch: NDArray, this: NDArray[np.intp], other: NDArray[np.intp]
+    places: NDArray, normals: NDArray, touch: NDArray, this: NDArray[np.intp], other: NDArray[np.intp]
 ) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Whether the other face reaches to both sides of this face's plane, and whether it lies in the plane."""
-    foot, normal = corners[this, 0], normals[this]
-    height = np.stack([np.einsum("nd,nd->n", corners[other, k] - foot, normal) for k in range(3)])
+    """Whether the other face reaches to both sides of this face's plane, and whether it lies in the plane.
+
+    `places` are corners by axis, corner and face, shape (3, 3, F), and `normals` by axis and face, shape (3, F).
+    """
+    height = np.zeros((3, len(this)))
+    for place, normal in zip(places, normals, strict=True):
+        foot, share = place[0][this], normal[this]
+        for k in range(3):
+            height[k] += (place[k][other] - foot) * share
     lo, hi = height.min(axis=0), height.max(axis=0)
     slack = np.maximum(touch[this], touch[other])
     return (lo < -slack) & (hi > slack), (lo >= -slack) & (hi <= slack)
