@@ -33,7 +33,7 @@ from .staging import staged
 if TYPE_CHECKING:
     from .pages import Shot
 
-    Drawn = list[Future[dict[str, list[Shot]]]]
+    Drawn = Future[dict[str, list[Shot]]]
 
 FILES = ("prosthesis.stl", "patch.nii.gz", "design.json", "report.html")
 """What a run leaves in its folder."""
@@ -41,7 +41,7 @@ _LIBRARIES = ("numpy", "scipy", "scikit-image", "pydicom", "nibabel", "pynrrd", 
 
 
 def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
-    """Design and measure; a thread prepares to draw meanwhile, and draws while there are measures and files to make.
+    """Design and measure; what is drawn is prepared meanwhile, and drawn while there are measures and files to make.
 
     Parameters
     ----------
@@ -52,32 +52,23 @@ def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
     Returns
     -------
     RunResult
-    list of Future
-        Promises of its `design_page.page_shots`, for `write_outputs`.
+    Future
+        Promise of its `design_pictures.shape_shots`, for `write_outputs`.
 
     Raises
     ------
     InputRefused, NoOpening
         As `run_design`.
     """
-    from ..drawing import figures
-    from .design_page import measure_shots
-    from .design_pictures import shape_shots, vault_of
+    from .painter import Painter
 
-    drawn: Drawn = []
-    painter = ThreadPoolExecutor(1)
-    painter.submit(figures.new_figure, 1.0, 1.0)  # loads matplotlib
-    vault = painter.submit(vault_of, case)
-
-    def begin(made: Prosthesis) -> None:
-        drawn.append(painter.submit(lambda: shape_shots(case, vault.result(), made)))
-
+    drawn: list[Drawn] = []
+    painter = Painter(case)
     try:
-        result = run_design(case, designed=begin, **options)
-        drawn.append(painter.submit(measure_shots, result))
+        result = run_design(case, designed=lambda made: drawn.append(painter.draw(made)), **options)
     finally:
-        painter.shutdown(wait=False)
-    return result, drawn
+        painter.close()
+    return result, drawn[0]
 
 
 def write_outputs(
@@ -93,8 +84,8 @@ def write_outputs(
     result : RunResult
     folder : Path
         Must be there; usually the one from `staging.staged`.
-    drawn : list of Future
-        Promises of its pictures, from `run_and_draw`.
+    drawn : Future
+        Promise of its pictures, from `run_and_draw`.
     progress : callable, optional
         Called with (step, fraction of the whole).
 
@@ -103,7 +94,7 @@ def write_outputs(
     CannotWrite
         If the mesh is not a solid, or a file cannot be written.
     """
-    from .design_page import report_page
+    from .design_page import measure_shots, report_page
 
     progress = progress or (lambda step, done: None)
     progress("writing", 0.85)
@@ -112,8 +103,7 @@ def write_outputs(
         shapes = beside.submit(_write_shapes, result.prosthesis, folder, result.mesh, result.case.load.order)
         files.write_json(folder / "design.json", design_record(result))
         progress("report", 0.92)
-        shots = {name: some for part in drawn for name, some in part.result().items()}
-        files.write_text(folder / "report.html", report_page(result, shots))
+        files.write_text(folder / "report.html", report_page(result, drawn.result() | measure_shots(result)))
         shapes.result()  # or what kept it from being written
     progress("done", 1.0)
 

@@ -11,7 +11,7 @@ from cli_runs import digest
 
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.methods.design import design
-from cranio_nb.output import design_folder, design_pictures, files
+from cranio_nb.output import design_folder, files, painter
 from cranio_nb.output.design_folder import made_record, run_and_draw, save
 from cranio_nb.output.staging import staged
 from cranio_nb.pipeline.preparation import prepare
@@ -131,7 +131,7 @@ def test_pictures_that_cannot_be_drawn_leave_nothing_behind(phantom, tmp_path, m
     def fail(*_):
         raise MemoryError("no room for pictures")
 
-    monkeypatch.setattr(design_pictures, "shape_shots", fail)
+    monkeypatch.setattr(painter, "shape_shots", fail)
     write_case(tmp_path, phantom())
     result, drawn = run_and_draw(prepare(tmp_path / "ct"), method="hull")
     with pytest.raises(MemoryError, match="no room"), staged(tmp_path / "out") as part:
