@@ -98,6 +98,7 @@ def inflate(
     dt: float = 1.0,
     tol: float = 1e-3,
     max_iter: int = 2000,
+    max_moves: float = np.inf,
     iter_callback: Callable[[int, Points, NDArray], None] | None = None,
 ) -> Balloon:
     """Relax a batch of balloons.
@@ -120,6 +121,8 @@ def inflate(
         A curve stops when ||c(t + dt) - c(t)|| <= tol, px, the norm over all its snaxels; the paper: 1e-3.
     max_iter : int
         At most so many steps; `Balloon.converged` says whether they were enough.
+    max_moves : float
+        After so many steps of single snaxels, those of all curves that still moved added up, none goes on.
     iter_callback : callable, optional
         Called after each step with (step, curves (..., n, 2), change (...) in px).
 
@@ -157,6 +160,7 @@ def inflate(
 
     n_iter = np.zeros(len(curve), np.intp)
     moving = np.ones(len(curve), bool)
+    n_moves = 0
     for step in range(1, max_iter + 1):
         # eq. (1): the pressure along the normals of now, the curve's own forces of the next step
         force = k[moving] * normals(curve[moving])[:, 1:-1] + fixed[moving]
@@ -167,10 +171,11 @@ def inflate(
         change[moving] = np.sqrt(((new - curve[moving, 1:-1]) ** 2).sum(axis=(1, 2)))
         curve[moving, 1:-1] = new
         n_iter[moving] = step
+        n_moves += n * int(np.count_nonzero(moving))
         moving = moving & (change > tol)
         if iter_callback is not None:
             iter_callback(step, curve.reshape(start.shape).copy(), change.reshape(shape))
-        if not moving.any():
+        if not moving.any() or n_moves >= max_moves:
             break
     return Balloon(curve.reshape(start.shape), start, n_iter.reshape(shape), ~moving.reshape(shape))
 

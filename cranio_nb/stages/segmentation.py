@@ -8,6 +8,8 @@ bone goes past 1000 HU, so there is no upper bound here unless one is set.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -15,6 +17,7 @@ from scipy import ndimage
 from ..errors import InputRefused
 from ..geometry.voxel_pieces import edge_labels
 from ..geometry.within_skin import within_skin
+from ..grid import Box
 from ..options import THRESHOLD
 from ..volume import Volume
 
@@ -22,13 +25,34 @@ BONE_HU: float = THRESHOLD.default
 """Lowest HU of bone (the paper, section 2)."""
 
 
+_MAX_HOLE_MM2 = 60.0
+_MIN_PART = 0.02
+_RIVAL = 0.2  # of the skull's voxels from which another part may be a second skull
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """What was found in a scan.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    others : tuple of Volume
+        Bool masks of the other parts that are large beside it, each on a grid of its own box.
+    """
+
+    bone: Volume
+    others: tuple[Volume, ...]
+
+
 def segment(
     ct: Volume,
     *,
     threshold: float = BONE_HU,
     upper: float = np.inf,
-    max_hole_mm2: float = 60.0,
-    min_part: float = 0.02,
+    max_hole_mm2: float = _MAX_HOLE_MM2,
+    min_part: float = _MIN_PART,
 ) -> Volume:
     """Separate the skull from everything else: threshold, drop artefacts, fill the holes of the diploe and sinuses.
 
@@ -71,6 +95,17 @@ def segment(
     >>> int(bone.voxels.sum()) == 10 * 10 * 10
     True
     """
+    return _separate(ct, threshold, upper, max_hole_mm2, min_part).bone
+
+
+def _separate(
+    ct: Volume,
+    threshold: float,
+    upper: float = np.inf,
+    max_hole_mm2: float = _MAX_HOLE_MM2,
+    min_part: float = _MIN_PART,
+) -> Parts:
+    """The skull as `segment` gives it, and what is large beside it."""
     # threshold, and what the skin encloses; all further work is in the box of that
     mask = ct.voxels
     if mask.dtype != bool:
@@ -80,10 +115,11 @@ def segment(
         raise InputRefused("NoBone", f"No voxel reaches {threshold:g} HU.", "Lower the bone threshold, or give a CT.")
 
     # artefacts first, so that no hole of theirs is filled
-    skull = drop_artefacts(mask[box], min_part=min_part)
+    skull, large = _choose_skull(mask[box], min_part)
     out = np.zeros(ct.shape, bool)
     out[box] = fill_holes(skull, max_hole_px=max_hole_mm2 / float(np.prod(ct.spacing[1:])))
-    return ct.with_voxels(out)
+    others = tuple(replace(ct.crop(box).crop(own), voxels=voxels) for own, voxels in large)
+    return Parts(ct.with_voxels(out), others)
 
 
 def bone_of(scan: Volume, threshold: float | None = None) -> Volume:
@@ -116,8 +152,35 @@ def bone_of(scan: Volume, threshold: float | None = None) -> Volume:
     >>> bool((from_ct.voxels == from_mask.voxels).all())
     True
     """
+    return parts_of(scan, threshold).bone
+
+
+def parts_of(scan: Volume, threshold: float | None = None) -> Parts:
+    """The skull of a scan as `bone_of` finds it, and what is large beside it.
+
+    Parameters
+    ----------
+    scan, threshold
+        As for `bone_of`.
+
+    Returns
+    -------
+    Parts
+
+    Raises
+    ------
+    InputRefused
+        As `bone_of`.
+
+    Examples
+    --------
+    >>> mask = np.zeros((6, 8, 16), bool)
+    >>> mask[:, 1:7, 1:7] = mask[:, 2:6, 9:13] = True
+    >>> [other.shape for other in parts_of(Volume(mask, np.eye(4))).others]
+    [(6, 4, 4)]
+    """
     used = threshold_of(scan, threshold)
-    return segment(scan) if used is None else segment(scan, threshold=used)
+    return _separate(scan, BONE_HU if used is None else used)
 
 
 def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
@@ -175,7 +238,7 @@ def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDA
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 
 
-def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArray[np.bool_]:
+def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = _MIN_PART) -> NDArray[np.bool_]:
     """Keep the skull and its loose pieces; drop islands, and what stands beside it.
 
     Parameters
@@ -202,9 +265,16 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     >>> bool((drop_artefacts(frame | inside | beside) == frame | inside).all())
     True
     """
+    return _choose_skull(mask, min_part)[0]
+
+
+def _choose_skull(
+    mask: NDArray[np.bool_], min_part: float
+) -> tuple[NDArray[np.bool_], list[tuple[Box, NDArray[np.bool_]]]]:
+    """The mask that `drop_artefacts` gives; and box and voxels of each part that is large beside the skull."""
     labels, n_parts = ndimage.label(mask)
     if n_parts == 1:
-        return mask
+        return mask, []
     part_of = labels[mask]
     sizes = np.bincount(part_of, minlength=n_parts + 1)
     boxes = ndimage.find_objects(labels)
@@ -216,7 +286,8 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     keep[[part for part in large if part == skull or _is_inside(boxes[part - 1], boxes[skull - 1])]] = True
     kept = np.zeros_like(mask)
     kept[mask] = keep[part_of]
-    return kept
+    rivals = [part for part in large if part != skull and sizes[part] >= _RIVAL * sizes[skull]]
+    return kept, [(boxes[part - 1], labels[boxes[part - 1]] == part) for part in rivals]
 
 
 def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.bool_]:

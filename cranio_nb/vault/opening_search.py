@@ -8,6 +8,8 @@ side by side belong to the same one. Nothing has to be clicked.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -17,8 +19,9 @@ from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
 from .opening_choice import JudgedOpening, choose_openings
-from .outermost_bone import STEP_DEG, OutermostBone, measure_outermost_bone, open_rays, room_in_image
+from .outermost_bone import STEP_DEG, OutermostBone, hinted_rays, measure_outermost_bone, open_rays, room_in_image
 from .ray_grid import filled_from_nearest
+from .smallest_hole import LEAST_MM, THICK_MM, smallest_hole_mm
 from .thin_bone import Material
 from .verdict import Signs, judge
 
@@ -28,7 +31,7 @@ _WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
 
 
 def find_openings(
-    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = 8.0
+    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = LEAST_MM
 ) -> tuple[Opening, ...]:
     """Find every opening of the vault that was cut.
 
@@ -64,11 +67,11 @@ def find_openings(
     3
     """
     found = survey_openings(bone, scan=scan, frame=frame, min_diameter_mm=min_diameter_mm)
-    return tuple(one.opening for one in choose_openings(found))
+    return tuple(one.opening for one in choose_openings(found, smallest_mm=smallest_hole_mm(float(bone.spacing.max()))))
 
 
 def survey_openings(
-    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = 8.0
+    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = LEAST_MM
 ) -> tuple[JudgedOpening, ...]:
     """Find every opening, cut or natural, and judge it.
 
@@ -80,7 +83,7 @@ def survey_openings(
     Returns
     -------
     tuple of JudgedOpening
-        Largest first, numbered from 1.
+        Largest first, numbered from 1; after them those of which a scan gives no more than a hint, all doubtful.
 
     Raises
     ------
@@ -97,22 +100,25 @@ def survey_openings(
     frame = frame or find_head_frame(bone)
     outermost = measure_outermost_bone(bone, frame.trusted_axes)
     groups = open_rays(outermost, min_diameter_mm)
-    if not groups:
+    hints = hinted_rays(outermost, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
+    if not groups and not hints:
         return ()
-    radius = _bridged_radius(outermost, groups)
     material = Material.of(bone, scan, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
-    judged = []
-    for number, rays in enumerate(groups, 1):
-        signs = _signs(bone, outermost, rays, radius, material, frame)
-        opening = Opening(_sheet(bone, outermost, rays, radius), outermost.grid.centre, frame.ray_axes)
-        judged.append(JudgedOpening(number, opening, judge(signs), room_in_image(outermost, rays)))
+    judged: list[JudgedOpening] = []
+    for some, plain in ((groups, True), (hints, False)):
+        radius = _bridged_radius(outermost, some)
+        for rays in some:
+            verdict = judge(replace(_signs(bone, outermost, rays, radius, material, frame), plain=plain))
+            if plain or verdict.kind == "doubtful":
+                opening = Opening(_sheet(bone, outermost, rays, radius), outermost.grid.centre, frame.ray_axes)
+                judged.append(JudgedOpening(len(judged) + 1, opening, verdict, room_in_image(outermost, rays)))
     return tuple(judged)
 
 
 def _bridged_radius(outermost: OutermostBone, groups: list[NDArray[np.bool_]]) -> NDArray[np.float64]:
     """Radius of a membrane across the openings, shape (n, n), mm: harmonic between the rims."""
     radius = filled_from_nearest(outermost.radius)
-    hole = np.logical_or.reduce(groups)
+    hole = np.logical_or.reduce([np.zeros(radius.shape, bool), *groups])
     for _ in range(200):
         radius[hole] = ndimage.uniform_filter(radius, 3)[hole]
     return radius
