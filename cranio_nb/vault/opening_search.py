@@ -19,10 +19,18 @@ from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
 from .opening_choice import JudgedOpening, choose_openings
-from .outermost_bone import STEP_DEG, OutermostBone, hinted_rays, measure_outermost_bone, open_rays, room_in_image
+from .outermost_bone import (
+    STEP_DEG,
+    OutermostBone,
+    hinted_rays,
+    measure_outermost_bone,
+    open_rays,
+    outermost_along,
+    room_in_image,
+)
 from .ray_grid import filled_from_nearest
 from .smallest_hole import LEAST_MM, THICK_MM, smallest_hole_mm
-from .thin_bone import Material
+from .thin_bone import SOFT_HU, Material
 from .verdict import Signs, judge
 
 _MIDDLE = 0.7  # of the distance from the rim to the innermost ray
@@ -100,25 +108,35 @@ def survey_openings(
     frame = frame or find_head_frame(bone)
     outermost = measure_outermost_bone(bone, frame.trusted_axes)
     groups = open_rays(outermost, min_diameter_mm)
-    hints = hinted_rays(outermost, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
-    if not groups and not hints:
-        return ()
-    material = Material.of(bone, scan, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
+    unfilled = _unfilled(bone, scan)
+    seen = outermost_along(outermost.grid, unfilled)
+    hints = hinted_rays(seen, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
     judged: list[JudgedOpening] = []
-    for some, plain in ((groups, True), (hints, False)):
-        radius = _bridged_radius(outermost, some)
+    for some, mask, rays_of, plain in ((groups, bone, outermost, True), (hints, unfilled, seen, False)):
+        if not some:
+            continue
+        radius = _bridged_radius(rays_of, some)
+        met = rays_of.grid.directions[np.isfinite(rays_of.radius)]
+        material = Material.of(mask, scan, rays_of.grid.centre, met)
         for rays in some:
-            verdict = judge(replace(_signs(bone, outermost, rays, radius, material, frame), plain=plain))
+            verdict = judge(replace(_signs(mask, rays_of, rays, radius, material, frame), plain=plain))
             if plain or verdict.kind == "doubtful":
-                opening = Opening(_sheet(bone, outermost, rays, radius), outermost.grid.centre, frame.ray_axes)
-                judged.append(JudgedOpening(len(judged) + 1, opening, verdict, room_in_image(outermost, rays)))
+                opening = Opening(_sheet(mask, rays_of, rays, radius), rays_of.grid.centre, frame.ray_axes)
+                judged.append(JudgedOpening(len(judged) + 1, opening, verdict, room_in_image(rays_of, rays)))
     return tuple(judged)
+
+
+def _unfilled(bone: Volume, scan: Volume | None) -> Volume:
+    """The bone without the pores of its slices that were filled: where a slice cuts the vault flat, a hole is one."""
+    if scan is None:
+        return bone
+    return bone.with_voxels(bone.voxels & (scan.voxels if scan.voxels.dtype == bool else scan.voxels >= SOFT_HU))
 
 
 def _bridged_radius(outermost: OutermostBone, groups: list[NDArray[np.bool_]]) -> NDArray[np.float64]:
     """Radius of a membrane across the openings, shape (n, n), mm: harmonic between the rims."""
     radius = filled_from_nearest(outermost.radius)
-    hole = np.logical_or.reduce([np.zeros(radius.shape, bool), *groups])
+    hole = np.logical_or.reduce(groups)
     for _ in range(200):
         radius[hole] = ndimage.uniform_filter(radius, 3)[hole]
     return radius

@@ -120,7 +120,23 @@ def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> Outermost
     OutermostBone
     """
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / STEP_DEG))
-    grid = RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1)
+    return outermost_along(RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1), bone)
+
+
+def outermost_along(grid: RayGrid, bone: Volume) -> OutermostBone:
+    """Measure the vault along given rays.
+
+    Parameters
+    ----------
+    grid : RayGrid
+        About the vertex.
+    bone : Volume
+        Bool mask of the skull.
+
+    Returns
+    -------
+    OutermostBone
+    """
     directions = grid.directions
     start, step = bone.to_voxel(grid.centre), bone.steps(directions).reshape(-1, 3)
     radius, seen = np.full(len(step), np.nan), np.zeros(len(step))

@@ -122,9 +122,12 @@ RULES = (
         lambda s: Verdict(True, 0.7, f"Its rim is {s.rim_mm:.1f} mm thin, as where bone wears away or is blurred."),
     ),
     Rule(
-        "it is so narrow that slices so thick hardly show it, or begins just below the vault",
+        "the slices hardly show it: it is narrow for ones so thick, or one of them cuts it flat; or it begins just"
+        " below the vault",
         lambda s: not s.plain,
-        lambda s: Verdict(False, 0.4, "Hardly wide enough to be seen in slices so thick, or just below the vault."),
+        lambda s: Verdict(
+            False, 0.4, "Hardly shown: small for these slices, cut flat by one, or just below the vault."
+        ),
     ),
     Rule(
         f"less than {100 * _BASE_SHARE:g} % of it lies above the base of the skull",
