@@ -25,8 +25,8 @@ from .outermost_bone import (
     hinted_rays,
     measure_outermost_bone,
     open_rays,
-    outermost_along,
     room_in_image,
+    vertex_rays,
 )
 from .ray_grid import filled_from_nearest
 from .smallest_hole import LEAST_MM, THICK_MM, smallest_hole_mm
@@ -106,10 +106,11 @@ def survey_openings(
     [(1, 'cut'), (2, 'cut')]
     """
     frame = frame or find_head_frame(bone)
-    outermost = measure_outermost_bone(bone, frame.trusted_axes)
+    grid = vertex_rays(bone, frame.trusted_axes)
+    outermost = measure_outermost_bone(bone, grid)
     groups = open_rays(outermost, min_diameter_mm)
     unfilled = _unfilled(bone, scan)
-    seen = outermost_along(outermost.grid, unfilled)
+    seen = measure_outermost_bone(unfilled, grid)
     hints = hinted_rays(seen, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
     judged: list[JudgedOpening] = []
     for some, mask, rays_of, plain in ((groups, bone, outermost, True), (hints, unfilled, seen, False)):

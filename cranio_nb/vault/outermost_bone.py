@@ -105,8 +105,8 @@ class OutermostBone:
         return float(np.nanmedian(self.radius[self.within(_SIDE_DEG)]))
 
 
-def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> OutermostBone:
-    """Measure the vault along rays about the vertex.
+def vertex_rays(bone: Volume, axes: NDArray[np.float64]) -> RayGrid:
+    """Rays about the vertex from a point inside the head.
 
     Parameters
     ----------
@@ -117,21 +117,21 @@ def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> Outermost
 
     Returns
     -------
-    OutermostBone
+    RayGrid
     """
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / STEP_DEG))
-    return outermost_along(RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1), bone)
+    return RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1)
 
 
-def outermost_along(grid: RayGrid, bone: Volume) -> OutermostBone:
-    """Measure the vault along given rays.
+def measure_outermost_bone(bone: Volume, grid: RayGrid) -> OutermostBone:
+    """Measure the vault along rays about the vertex.
 
     Parameters
     ----------
-    grid : RayGrid
-        About the vertex.
     bone : Volume
         Bool mask of the skull.
+    grid : RayGrid
+        From `vertex_rays`.
 
     Returns
     -------
