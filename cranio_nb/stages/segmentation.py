@@ -95,21 +95,21 @@ def segment(
     >>> int(bone.voxels.sum()) == 10 * 10 * 10
     True
     """
-    return _separate(ct, threshold, upper, max_hole_mm2, min_part).bone
+    mask = ct.voxels
+    if mask.dtype != bool:
+        mask = within_skin(apply_threshold(ct.voxels, threshold, upper), ct)
+    return _separate(ct, mask, threshold, max_hole_mm2, min_part).bone
 
 
 def _separate(
     ct: Volume,
+    mask: NDArray[np.bool_],
     threshold: float,
-    upper: float = np.inf,
     max_hole_mm2: float = _MAX_HOLE_MM2,
     min_part: float = _MIN_PART,
 ) -> Parts:
-    """The skull as `segment` gives it, and what is large beside it."""
-    # threshold, and what the skin encloses; all further work is in the box of that
-    mask = ct.voxels
-    if mask.dtype != bool:
-        mask = within_skin(apply_threshold(ct.voxels, threshold, upper), ct)
+    """The skull as `segment` gives it from what lies within the skin, and what is large beside it."""
+    # all further work is in the box of that
     box = ct.with_voxels(mask).box()
     if not mask[box].size:
         raise InputRefused("NoBone", f"No voxel reaches {threshold:g} HU.", "Lower the bone threshold, or give a CT.")
@@ -180,7 +180,9 @@ def parts_of(scan: Volume, threshold: float | None = None) -> Parts:
     [(6, 4, 4)]
     """
     used = threshold_of(scan, threshold)
-    return _separate(scan, BONE_HU if used is None else used)
+    if used is None:
+        return _separate(scan, scan.voxels, BONE_HU)
+    return _separate(scan, within_skin(apply_threshold(scan.voxels, used), scan), used)
 
 
 def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
