@@ -36,8 +36,7 @@ def inspect(
     """
     from ..output.design_folder import load_record
     from ..pipeline.survey import survey_scan
-    from ..vault.opening_choice import choose_openings
-    from ..vault.remarks import orientation_remarks, thickness_remarks
+    from ..vault.remarks import thickness_remarks
     from .console import print_json, print_load, print_openings, progress_bar
 
     check_reads(scan=scan)
@@ -49,14 +48,14 @@ def inspect(
     problem: CranioError | None = None
     found: tuple[JudgedOpening, ...] = ()
     closed: tuple[JudgedOpening, ...] = ()
-    load = replace(load, findings=(*load.findings, *thickness_remarks(load.spacing[0])))
+    said = thickness_remarks(load.spacing[0])
     try:
         seen = survey_scan(volume, threshold)
-        load = replace(load, findings=(*load.findings, *orientation_remarks(seen.frame)))
-        found = seen.found
-        closed = choose_openings(found)
+        found, said = seen.found, seen.remarks
+        closed = seen.choose()
     except CranioError as error:
         problem = error
+    load = replace(load, findings=(*load.findings, *said))
     if as_json:
         listed = {"openings": closed, "left_open": [one for one in found if one not in closed]}
         records = {name: [one.record() for one in some] for name, some in listed.items()}

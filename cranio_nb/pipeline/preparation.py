@@ -12,9 +12,8 @@ from ..errors import InputRefused, NoOpening
 from ..opening import Opening
 from ..readers import LoadReport, read_ct
 from ..stages.segmentation import threshold_of
-from ..vault.opening_choice import JudgedOpening, choose_openings
+from ..vault.opening_choice import JudgedOpening
 from ..vault.opening_size import OpeningSize
-from ..vault.remarks import orientation_remarks, thickness_remarks
 from ..volume import Volume, same_grid
 from .input_digest import digest_volume
 from .survey import Survey, survey_scan
@@ -155,8 +154,7 @@ def prepare(
     clock.lap("read")
     report("bone", 0.3)
     seen = survey_scan(scan, threshold)
-    said = (*thickness_remarks(load.spacing[0]), *orientation_remarks(seen.frame))
-    load = replace(load, findings=(*load.findings, *said))
+    load = replace(load, findings=(*load.findings, *seen.remarks))
     closed = openings_to_close(seen, opening, planes)
     numbers = {one.number for one in closed}
     left_open = tuple(one for one in seen.found if one.number not in numbers)
@@ -185,7 +183,7 @@ def openings_to_close(
     InputRefused, NoOpening
         As `prepare`.
     """
-    chosen = choose_openings(seen.found, numbers)
+    chosen = seen.choose(numbers)
     closed = chosen if planes is None else within_planes(chosen, planes)
     for one in closed:
         check_margin(one.opening.sheet, f"Opening {one.number}")

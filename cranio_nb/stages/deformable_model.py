@@ -99,6 +99,7 @@ def inflate(
     dt: float = 1.0,
     tol: float = 1e-3,
     max_iter: int = 2000,
+    max_moves: float = np.inf,
     iter_callback: Callable[[int, Points, NDArray], None] | None = None,
 ) -> Balloon:
     """Relax a batch of balloons.
@@ -121,6 +122,8 @@ def inflate(
         A curve stops when ||c(t + dt) - c(t)|| <= tol, px, the norm over all its snaxels; the paper: 1e-3.
     max_iter : int
         At most so many steps; `Balloon.converged` says whether they were enough.
+    max_moves : float
+        After so many steps of single snaxels, those of all curves that still moved added up, none goes on.
     iter_callback : callable, optional
         Called after each step with (step, curves (..., n, 2), change (...) in px).
 
@@ -169,10 +172,14 @@ def inflate(
     for first in range(0, len(curves), size):
         part = slice(first, first + size)
         relaxing = _relaxed(curves[part], k[part], fixed[part], step_matrix, dt=dt, tol=tol)
+        moves_left = max_moves * len(curves[part]) / len(curves)  # each part has its share
         for step, moving, moved in islice(relaxing, max_iter):
             n_iter[part][moving] = step
             at_rest[part] = moved <= tol
             done(step, moved)
+            moves_left -= n * np.count_nonzero(moving)
+            if moves_left <= 0:
+                break
     curve = np.moveaxis(curves, 1, 2).reshape(start.shape)
     return Balloon(curve, start, n_iter.reshape(shape), at_rest.reshape(shape))
 

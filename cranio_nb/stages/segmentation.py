@@ -8,12 +8,15 @@ bone goes past 1000 HU, so there is no upper bound here unless one is set.
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InputRefused
-from ..geometry.voxel_runs import find_pieces
+from ..geometry.voxel_runs import Runs, find_pieces
 from ..geometry.within_skin import within_skin
+from ..grid import Box
 from ..options import THRESHOLD
 from ..volume import Volume
 
@@ -21,13 +24,34 @@ BONE_HU: float = THRESHOLD.default
 """Lowest HU of bone (the paper, section 2)."""
 
 
+_MAX_HOLE_MM2 = 60.0
+_MIN_PART = 0.02
+_RIVAL = 0.2  # of the skull's voxels from which another part may be a second skull
+
+
+@dataclass(frozen=True, eq=False)
+class Parts:
+    """What was found in a scan.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    others : tuple of Volume
+        Bool masks of the other parts that are large beside it, each on a grid of its own box.
+    """
+
+    bone: Volume
+    others: tuple[Volume, ...]
+
+
 def segment(
     ct: Volume,
     *,
     threshold: float = BONE_HU,
     upper: float = np.inf,
-    max_hole_mm2: float = 60.0,
-    min_part: float = 0.02,
+    max_hole_mm2: float = _MAX_HOLE_MM2,
+    min_part: float = _MIN_PART,
 ) -> Volume:
     """Separate the skull from everything else: threshold, drop artefacts, fill the holes of the diploe and sinuses.
 
@@ -70,19 +94,31 @@ def segment(
     >>> int(bone.voxels.sum()) == 10 * 10 * 10
     True
     """
-    # threshold, and what the skin encloses; all further work is in the box of that
     mask = ct.voxels
     if mask.dtype != bool:
         mask = within_skin(apply_threshold(ct.voxels, threshold, upper), ct)
+    return _separate(ct, mask, threshold, max_hole_mm2, min_part).bone
+
+
+def _separate(
+    ct: Volume,
+    mask: NDArray[np.bool_],
+    threshold: float,
+    max_hole_mm2: float = _MAX_HOLE_MM2,
+    min_part: float = _MIN_PART,
+) -> Parts:
+    """The skull as `segment` gives it from what lies within the skin, and what is large beside it."""
+    # all further work is in the box of that
     box = ct.with_voxels(mask).box()
     if not mask[box].size:
         raise InputRefused("NoBone", f"No voxel reaches {threshold:g} HU.", "Lower the bone threshold, or give a CT.")
 
     # artefacts first, so that no hole of theirs is filled
-    skull = drop_artefacts(mask[box], min_part=min_part)
+    skull, large = _choose_skull(mask[box], min_part)
     out = np.zeros(ct.shape, bool)
     out[box] = fill_holes(skull, max_hole_px=max_hole_mm2 / float(np.prod(ct.spacing[1:])))
-    return ct.with_voxels(out)
+    others = tuple(replace(ct.crop(box).crop(own), voxels=voxels) for own, voxels in large)
+    return Parts(ct.with_voxels(out), others)
 
 
 def bone_of(scan: Volume, threshold: float | None = None) -> Volume:
@@ -115,8 +151,37 @@ def bone_of(scan: Volume, threshold: float | None = None) -> Volume:
     >>> bool((from_ct.voxels == from_mask.voxels).all())
     True
     """
+    return parts_of(scan, threshold).bone
+
+
+def parts_of(scan: Volume, threshold: float | None = None) -> Parts:
+    """The skull of a scan as `bone_of` finds it, and what is large beside it.
+
+    Parameters
+    ----------
+    scan, threshold
+        As for `bone_of`.
+
+    Returns
+    -------
+    Parts
+
+    Raises
+    ------
+    InputRefused
+        As `bone_of`.
+
+    Examples
+    --------
+    >>> mask = np.zeros((6, 8, 16), bool)
+    >>> mask[:, 1:7, 1:7] = mask[:, 2:6, 9:13] = True
+    >>> [other.shape for other in parts_of(Volume(mask, np.eye(4))).others]
+    [(6, 4, 4)]
+    """
     used = threshold_of(scan, threshold)
-    return segment(scan) if used is None else segment(scan, threshold=used)
+    if used is None:
+        return _separate(scan, scan.voxels, BONE_HU)
+    return _separate(scan, within_skin(apply_threshold(scan.voxels, used), scan), used)
 
 
 def threshold_of(scan: Volume, threshold: float | None = None) -> float | None:
@@ -176,7 +241,7 @@ def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDA
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 
 
-def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArray[np.bool_]:
+def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = _MIN_PART) -> NDArray[np.bool_]:
     """Keep the skull and its loose pieces; drop islands, and what stands beside it.
 
     Parameters
@@ -203,9 +268,16 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     >>> bool((drop_artefacts(frame | inside | beside) == frame | inside).all())
     True
     """
+    return _choose_skull(mask, min_part)[0]
+
+
+def _choose_skull(
+    mask: NDArray[np.bool_], min_part: float
+) -> tuple[NDArray[np.bool_], list[tuple[Box, NDArray[np.bool_]]]]:
+    """The mask that `drop_artefacts` gives; and box and voxels of each part that is large beside the skull."""
     parts = find_pieces(mask)
     if parts.n_pieces == 1:
-        return mask
+        return mask, []
     large = parts.sizes >= min_part * parts.sizes.max()
 
     # the skull is large and encloses much; a couch plate encloses little
@@ -214,7 +286,17 @@ def drop_artefacts(mask: NDArray[np.bool_], *, min_part: float = 0.02) -> NDArra
     inside = ((start[skull] <= (start + stop) / 2) & ((start + stop) / 2 <= stop[skull])).all(axis=1)
     kept = mask.copy()
     kept.ravel()[parts.places(~(large & inside))] = False
-    return kept
+    every = np.arange(parts.n_pieces)
+    rivals = every[large & (every != skull) & (parts.sizes >= _RIVAL * parts.sizes[skull])]
+    return kept, [_cut_out(parts, rival) for rival in rivals]
+
+
+def _cut_out(parts: Runs, one: int) -> tuple[Box, NDArray[np.bool_]]:
+    """Box and voxels of one part."""
+    plane, row, col = (slice(int(a), int(b)) for a, b in parts.boxes[one].T)
+    voxels = np.zeros(parts.shape, bool)
+    voxels.ravel()[parts.places(np.arange(parts.n_pieces) == one)] = True
+    return (plane, row, col), voxels[plane, row, col]
 
 
 def fill_holes(mask: NDArray[np.bool_], *, max_hole_px: float) -> NDArray[np.bool_]:

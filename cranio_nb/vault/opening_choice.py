@@ -12,7 +12,9 @@ from typing import Any
 
 from ..errors import InputRefused, NoOpening
 from ..opening import Opening
+from ..readers import Finding
 from .opening_size import OpeningSize, measure_opening
+from .smallest_hole import LEAST_MM
 from .verdict import Verdict
 
 _BULGE_MM = 2.0  # by which missing bone may stand out of the surface that the bone around it lets expect
@@ -131,7 +133,13 @@ def check_intact(found: Sequence[JudgedOpening], remedy: str) -> None:
         raise InputRefused("NotIntact", f"The skull is not intact.{_listed(cut)}", remedy)
 
 
-def choose_openings(found: Sequence[JudgedOpening], numbers: Collection[int] = ()) -> tuple[JudgedOpening, ...]:
+def choose_openings(
+    found: Sequence[JudgedOpening],
+    numbers: Collection[int] = (),
+    *,
+    smallest_mm: float = LEAST_MM,
+    said: Sequence[Finding] = (),
+) -> tuple[JudgedOpening, ...]:
     """The openings to close.
 
     Parameters
@@ -140,6 +148,10 @@ def choose_openings(found: Sequence[JudgedOpening], numbers: Collection[int] = (
         All openings of a skull.
     numbers : collection of int
         Those to close, of whatever kind; when empty, those that were cut for sure.
+    smallest_mm : float
+        Width of the smallest hole that the scan can show.
+    said : sequence of Finding
+        What to know of the scan; its warnings stand beside the answer that there is no opening.
 
     Returns
     -------
@@ -149,7 +161,8 @@ def choose_openings(found: Sequence[JudgedOpening], numbers: Collection[int] = (
     Raises
     ------
     NoOpening
-        ``NoOpening`` when none was chosen and none was cut for sure; the message lists those in doubt.
+        ``NoOpening`` when none was chosen and none was cut for sure; the message lists those in doubt, and says down to
+        which width the scan shows holes.
     InputRefused
         ``NoSuchOpening`` for a number that there is not, with a list of all openings; ``OpeningLeavesImage`` when one
         of those to close reaches the edge of the image.
@@ -161,7 +174,7 @@ def choose_openings(found: Sequence[JudgedOpening], numbers: Collection[int] = (
         raise InputRefused("NoSuchOpening", message, "Give a number of this list." if found else "")
     chosen = tuple(one for one in found if one.number in numbers) if numbers else cut_openings(found)
     if not chosen:
-        _refuse_intact(found)
+        _refuse_intact(found, smallest_mm, "".join(f" {one.message}" for one in said if one.severity == "warning"))
     beyond = [one for one in chosen if not one.whole]
     if beyond:
         raise InputRefused(
@@ -172,13 +185,16 @@ def choose_openings(found: Sequence[JudgedOpening], numbers: Collection[int] = (
     return chosen
 
 
-def _refuse_intact(found: Sequence[JudgedOpening]) -> None:
-    """Say that nothing is closed without being chosen, and what is in doubt."""
+def _refuse_intact(found: Sequence[JudgedOpening], smallest_mm: float, warnings: str) -> None:
+    """Say that nothing is closed without being chosen, what is in doubt, and what the scan cannot show."""
     doubtful = [one for one in found if one.verdict.kind == "doubtful"]
+    limit = f"The smallest hole that this scan can show for sure is {smallest_mm:.0f} mm wide.{warnings}"
     if not doubtful:
-        raise NoOpening("NoOpening", "The vault of this skull has no opening; there is nothing to close.")
+        message = "The vault of this skull has no opening; there is nothing to close."
+        raise NoOpening("NoOpening", f"{message} {limit}")
     message = f"The vault of this skull has no opening that was cut for sure, but a doubtful one.{_listed(doubtful)}"
-    raise NoOpening("NoOpening", message, f"To close it, choose it by its number: --opening {doubtful[0].number}.")
+    remedy = f"To close it, choose it by its number: --opening {doubtful[0].number}."
+    raise NoOpening("NoOpening", f"{message} {limit}", remedy)
 
 
 def _listed(openings: Sequence[JudgedOpening]) -> str:

@@ -8,6 +8,8 @@ side by side belong to the same one. Nothing has to be clicked.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -17,9 +19,18 @@ from ..opening import Opening
 from ..volume import Volume
 from .head_frame import HeadFrame, find_head_frame
 from .opening_choice import JudgedOpening, choose_openings
-from .outermost_bone import STEP_DEG, OutermostBone, measure_outermost_bone, open_rays, room_in_image
+from .outermost_bone import (
+    STEP_DEG,
+    OutermostBone,
+    hinted_rays,
+    measure_outermost_bone,
+    open_rays,
+    room_in_image,
+    vertex_rays,
+)
 from .ray_grid import filled_from_nearest
-from .thin_bone import Material
+from .smallest_hole import LEAST_MM, THICK_MM, smallest_hole_mm
+from .thin_bone import SOFT_HU, Material
 from .verdict import Signs, judge
 
 _MIDDLE = 0.7  # of the distance from the rim to the innermost ray
@@ -28,7 +39,7 @@ _WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
 
 
 def find_openings(
-    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = 8.0
+    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = LEAST_MM
 ) -> tuple[Opening, ...]:
     """Find every opening of the vault that was cut.
 
@@ -64,11 +75,11 @@ def find_openings(
     3
     """
     found = survey_openings(bone, scan=scan, frame=frame, min_diameter_mm=min_diameter_mm)
-    return tuple(one.opening for one in choose_openings(found))
+    return tuple(one.opening for one in choose_openings(found, smallest_mm=smallest_hole_mm(float(bone.spacing.max()))))
 
 
 def survey_openings(
-    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = 8.0
+    bone: Volume, *, scan: Volume | None = None, frame: HeadFrame | None = None, min_diameter_mm: float = LEAST_MM
 ) -> tuple[JudgedOpening, ...]:
     """Find every opening, cut or natural, and judge it.
 
@@ -80,7 +91,7 @@ def survey_openings(
     Returns
     -------
     tuple of JudgedOpening
-        Largest first, numbered from 1.
+        Largest first, numbered from 1; after them those of which a scan gives no more than a hint, all doubtful.
 
     Raises
     ------
@@ -95,18 +106,32 @@ def survey_openings(
     [(1, 'cut'), (2, 'cut')]
     """
     frame = frame or find_head_frame(bone)
-    outermost = measure_outermost_bone(bone, frame.trusted_axes)
+    grid = vertex_rays(bone, frame.trusted_axes)
+    outermost = measure_outermost_bone(bone, grid)
     groups = open_rays(outermost, min_diameter_mm)
-    if not groups:
-        return ()
-    radius = _bridged_radius(outermost, groups)
-    material = Material.of(bone, scan, outermost.grid.centre, outermost.grid.directions[np.isfinite(outermost.radius)])
-    judged = []
-    for number, rays in enumerate(groups, 1):
-        signs = _signs(bone, outermost, rays, radius, material, frame)
-        opening = Opening(_sheet(bone, outermost, rays, radius), outermost.grid.centre, frame.ray_axes)
-        judged.append(JudgedOpening(number, opening, judge(signs), room_in_image(outermost, rays)))
+    unfilled = _unfilled(bone, scan)
+    seen = measure_outermost_bone(unfilled, grid)
+    hints = hinted_rays(seen, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
+    judged: list[JudgedOpening] = []
+    for some, mask, rays_of, plain in ((groups, bone, outermost, True), (hints, unfilled, seen, False)):
+        if not some:
+            continue
+        radius = _bridged_radius(rays_of, some)
+        met = rays_of.grid.directions[np.isfinite(rays_of.radius)]
+        material = Material.of(mask, scan, rays_of.grid.centre, met)
+        for rays in some:
+            verdict = judge(replace(_signs(mask, rays_of, rays, radius, material, frame), plain=plain))
+            if plain or verdict.kind == "doubtful":
+                opening = Opening(_sheet(mask, rays_of, rays, radius), rays_of.grid.centre, frame.ray_axes)
+                judged.append(JudgedOpening(len(judged) + 1, opening, verdict, room_in_image(rays_of, rays)))
     return tuple(judged)
+
+
+def _unfilled(bone: Volume, scan: Volume | None) -> Volume:
+    """The bone without the pores of its slices that were filled: where a slice cuts the vault flat, a hole is one."""
+    if scan is None:
+        return bone
+    return bone.with_voxels(bone.voxels & (scan.voxels if scan.voxels.dtype == bool else scan.voxels >= SOFT_HU))
 
 
 def _bridged_radius(outermost: OutermostBone, groups: list[NDArray[np.bool_]]) -> NDArray[np.float64]:

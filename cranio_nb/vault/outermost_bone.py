@@ -26,6 +26,10 @@ _SEARCHED_DEG = 102.0  # from the vertex down to which the vault is searched; fu
 _BESIDE_DEG = 10.0  # more, so that an opening can be followed over the border
 _BASE_DEG = 88.0  # an opening that lies wholly further down is an orbit, an ear canal, the base
 _BROW_DEG = 10.0  # by which the line between vault and base rises in front and falls behind
+_BAND_DEG = 6.0  # below the line between vault and base, where no natural opening begins and a cut one may lie
+_HINT = 0.5  # of the width that is seen through: so much of it blur in thick slices may leave
+_HINT_RAYS = 7  # a disk of 6 mm; what is smaller is a pit or a vessel
+_APART_RAYS = 3  # beside an opening: what is open within is a part of its rim
 _SIDE_DEG = 90.0  # the vault proper, over which its radius is averaged
 _SEEN = 0.75  # of the width of a small opening that is seen through, where rays cross a thick wall aslant
 _SAMPLE_MM = 0.75  # along a ray
@@ -73,9 +77,20 @@ class OutermostBone:
         -------
         ndarray of bool, shape (n, n)
         """
+        return self.below_line_deg <= 1e-7
+
+    @property
+    def below_line_deg(self) -> NDArray[np.float64]:
+        """How far the rays lie below the line between vault and base.
+
+        Returns
+        -------
+        ndarray, shape (n, n)
+            Degrees; below 0 on the vault.
+        """
         v, _ = self.grid.offsets
         front = -v / np.maximum(self.grid.polar, 1e-9)
-        return self.grid.polar <= np.radians(_BASE_DEG - _BROW_DEG * front) + 1e-9
+        return np.degrees(self.grid.polar) - _BASE_DEG + _BROW_DEG * front
 
     @property
     def typical_radius(self) -> float:
@@ -89,8 +104,8 @@ class OutermostBone:
         return float(np.nanmedian(self.radius[self.within(_SIDE_DEG)]))
 
 
-def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> OutermostBone:
-    """Measure the vault along rays about the vertex.
+def vertex_rays(bone: Volume, axes: NDArray[np.float64]) -> RayGrid:
+    """Rays about the vertex from a point inside the head.
 
     Parameters
     ----------
@@ -101,10 +116,26 @@ def measure_outermost_bone(bone: Volume, axes: NDArray[np.float64]) -> Outermost
 
     Returns
     -------
-    OutermostBone
+    RayGrid
     """
     half = int(np.ceil((_SEARCHED_DEG + _BESIDE_DEG + 2) / STEP_DEG))
-    grid = RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1)
+    return RayGrid(head_centre(bone, axes), axes, np.radians(STEP_DEG), 2 * half + 1)
+
+
+def measure_outermost_bone(bone: Volume, grid: RayGrid) -> OutermostBone:
+    """Measure the vault along rays about the vertex.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    grid : RayGrid
+        From `vertex_rays`.
+
+    Returns
+    -------
+    OutermostBone
+    """
     directions = grid.directions
     start, step = bone.to_voxel(grid.centre)[:, None], np.ascontiguousarray(bone.steps(directions).reshape(-1, 3).T)
     radius, seen = np.full(step.shape[1], np.nan), np.zeros(step.shape[1])
@@ -136,18 +167,59 @@ def open_rays(outermost: OutermostBone, min_diameter_mm: float) -> list[NDArray[
         Largest first.
     """
     # an opening has a core in which a disk of the smallest diameter fits; the core grows back to the rim
-    reach = _SEEN * np.degrees(min_diameter_mm / 2 / outermost.typical_radius) / STEP_DEG
-    free = np.isnan(outermost.radius) & outermost.within(_SEARCHED_DEG + _BESIDE_DEG)
+    reach = _core_reach(outermost, min_diameter_mm)
+    free = _free_rays(outermost)
     core = (ndimage.distance_transform_edt(free) > reach) & outermost.within(_SEARCHED_DEG)
     grown = ndimage.binary_dilation(core, _disk(reach + 1), mask=free)
-    labels, n_groups = ndimage.label(grown, np.ones((3, 3)))
-    on_vault = outermost.above_base
-    groups = []
-    for rays in (labels == i for i in range(1, n_groups + 1)):
-        if not (rays & core & on_vault).any():  # also a pocket beside the hole, without a core
-            continue
-        groups.append(rays)
-    return sorted(groups, key=np.count_nonzero, reverse=True)
+    # without a core on the vault it is a pocket beside the hole, or at the base
+    return _pieces(grown, core & outermost.above_base)
+
+
+def hinted_rays(
+    outermost: OutermostBone, groups: list[NDArray[np.bool_]], min_diameter_mm: float, *, blurred: bool
+) -> list[NDArray[np.bool_]]:
+    """Rays that leave where an opening may be: too narrow to be seen well, or just below the vault.
+
+    Parameters
+    ----------
+    outermost : OutermostBone
+    groups : list of ndarray of bool, shape (n, n)
+        The openings, from `open_rays`.
+    min_diameter_mm : float
+        As for `open_rays`.
+    blurred : bool
+        Whether the slices are so thick that they blur small openings; else narrower places are none.
+
+    Returns
+    -------
+    list of ndarray of bool, shape (n, n)
+        Largest first, apart from the openings.
+    """
+    free = _free_rays(outermost)
+    known = np.logical_or.reduce([np.zeros_like(free), *groups])
+    reach = _core_reach(outermost, min_diameter_mm) * (_HINT if blurred else 1.0)
+    core = ndimage.distance_transform_edt(free) > reach
+    near = core & outermost.within(_SEARCHED_DEG) & (outermost.below_line_deg <= _BAND_DEG)
+    beside = ndimage.binary_dilation(known, iterations=_APART_RAYS)
+    pieces = _pieces(free, near)
+    return [rays for rays in pieces if np.count_nonzero(rays) >= _HINT_RAYS and not (rays & beside).any()]
+
+
+def _free_rays(outermost: OutermostBone) -> NDArray[np.bool_]:
+    """Rays that meet no bone, over the vault and a little more."""
+    return np.isnan(outermost.radius) & outermost.within(_SEARCHED_DEG + _BESIDE_DEG)
+
+
+def _core_reach(outermost: OutermostBone, min_diameter_mm: float) -> float:
+    """Radius of the core of the smallest opening, rays."""
+    return float(_SEEN * np.degrees(min_diameter_mm / 2 / outermost.typical_radius) / STEP_DEG)
+
+
+def _pieces(mask: NDArray[np.bool_], seeds: NDArray[np.bool_]) -> list[NDArray[np.bool_]]:
+    """The connected pieces of a mask that hold a seed, largest first."""
+    labels, _ = ndimage.label(mask, np.ones((3, 3)))
+    held = np.setdiff1d(labels[seeds & mask], 0)
+    return sorted((labels == i for i in held), key=np.count_nonzero, reverse=True)
 
 
 def room_in_image(outermost: OutermostBone, rays: NDArray[np.bool_]) -> float:

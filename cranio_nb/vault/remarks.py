@@ -12,11 +12,10 @@ import numpy as np
 from ..readers import Finding
 from .head_frame import SURE, HeadFrame
 from .opening_choice import JudgedOpening
+from .smallest_hole import THICK_MM, smallest_hole_mm
 
 _ODD_DEG = 60.0  # between the head's top and the end called top, beyond any nod or roll on a head rest
 _OVER_DEG = 120.0
-_CORE_MM = 6.0  # of an opening must be seen free; thick slices blur up to one slice of it at each rim
-_THICK_MM = 2.9  # a slice as thick as the vault's thin places is wide: 3 mm, and what is rounded to it
 
 
 def orientation_remarks(frame: HeadFrame) -> tuple[Finding, ...]:
@@ -67,9 +66,9 @@ def thickness_remarks(slice_mm: float) -> tuple[Finding, ...]:
     >>> thickness_remarks(5.0)[0].code
     'ThickSlices'
     """
-    if slice_mm < _THICK_MM:
+    if slice_mm < THICK_MM:
         return ()
-    missed_mm = _CORE_MM + 2 * slice_mm
+    missed_mm = smallest_hole_mm(slice_mm)
     message = (
         f"The slices are {slice_mm:.1f} mm apart: bone nearly along a slice is blurred into its surroundings, "
         f"and holes narrower than {missed_mm:.0f} mm can be missed. Slices up to 1 mm are best."

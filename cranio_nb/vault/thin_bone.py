@@ -29,7 +29,8 @@ Array = NDArray[np.float64]
 
 _BELOW_MM, _STEP_MM = 12.0, 0.75  # the expected outer surface, and between samples
 _MARGIN_HU = 100.0  # above the medium up to which soft tissue and noise count for nothing
-_SOFT_HU = 150.0  # about water: fat has -100 HU, clotted blood, the densest soft tissue, less than 100
+SOFT_HU = 150.0
+"""About water: fat has -100 HU, clotted blood, the densest soft tissue, less than 100."""
 _LAYER_MM = 3.0  # of soft tissue: thinner than any scalp, wider than the flanks of a blurred wall
 _INSIDE_MM = np.array([5.0, 15.0, 25.0, 35.0])  # from the head's centre, where the medium is measured
 
@@ -113,5 +114,5 @@ class Material:
         if self.volume.voxels.dtype == bool:
             return thickness
         # soft tissue is no bone, also where the head is full of air
-        layer_mm = (np.abs(values) < _SOFT_HU).sum(axis=1) * _STEP_MM
-        return np.where((values.max(axis=1) < _SOFT_HU) & (layer_mm >= _LAYER_MM), 0.0, thickness)
+        layer_mm = (np.abs(values) < SOFT_HU).sum(axis=1) * _STEP_MM
+        return np.where((values.max(axis=1) < SOFT_HU) & (layer_mm >= _LAYER_MM), 0.0, thickness)

@@ -38,6 +38,8 @@ class Signs:
         Median thickness of the rim.
     frame : float
         Confidence in how the head lies.
+    plain : bool
+        Whether it is wide enough for these slices and reaches into the vault; else there is no more than a hint of it.
     """
 
     diameter_mm: float
@@ -46,6 +48,7 @@ class Signs:
     two_walls: float
     rim_mm: float
     frame: float
+    plain: bool = True
 
 
 @dataclass(frozen=True)
@@ -117,6 +120,14 @@ RULES = (
         f"it is narrower than {_SMALL_MM:g} mm, and its rim thinner than {_PAPER_MM:g} mm",
         lambda s: s.diameter_mm < _SMALL_MM and s.rim_mm < _PAPER_MM,
         lambda s: Verdict(True, 0.7, f"Its rim is {s.rim_mm:.1f} mm thin, as where bone wears away or is blurred."),
+    ),
+    Rule(
+        "the slices hardly show it: it is narrow for ones so thick, or one of them cuts it flat; or it begins just"
+        " below the vault",
+        lambda s: not s.plain,
+        lambda s: Verdict(
+            False, 0.4, "Hardly shown: small for these slices, cut flat by one, or just below the vault."
+        ),
     ),
     Rule(
         f"less than {100 * _BASE_SHARE:g} % of it lies above the base of the skull",

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import cranio_nb as cn
 from cranio_nb.errors import CranioError, InputRefused
 from cranio_nb.methods.catalogue import METHODS, check_options, default_options, find_method, options_of, preset_options
+from cranio_nb.methods.slicewise import method as slicewise
 from cranio_nb.stages import deformable_model
 from data_synth import phantom_case
 
@@ -117,6 +118,19 @@ def test_no_slice_takes_more_steps_of_points_than_are_counted(axial, directions,
     per_direction = max(Counter(one.get("direction", 0) for one in slices).values())
     most = find_method("slicewise").work.amount(default_options("slicewise") | asked)
     assert 0 < sum(steps) <= 2 * per_direction * most  # an outer and an inner curve
+
+
+def test_balloons_that_a_small_tol_keeps_moving_are_stopped_and_said_not_to_be_at_rest(skull, openings, monkeypatch):
+    monkeypatch.setattr(slicewise, "MOST_MOVES", 500_000)
+    done, solve = [], deformable_model._solve_curves
+    monkeypatch.setattr(
+        deformable_model, "_solve_curves", lambda factor, right: [done.append(right.shape[:2]), solve(factor, right)][1]
+    )
+    made = cn.design(skull("burr_hole"), openings("burr_hole"), method="slicewise", n_snaxels=201, tol=1e-9)
+    moves = [curves * (points + 2) for curves, points in done]
+    assert sum(moves[:-1]) < 500_000 <= sum(moves)
+    balloons = [one for one in made.record["slices"] if one["status"] == "balloon"]
+    assert not any(all(one["converged"]) for one in balloons) and made.patch.voxels.any()
 
 
 NUMBERS = st.floats() | st.integers() | st.integers(-5, 50) | st.floats(-1, 50)

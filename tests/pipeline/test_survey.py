@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import cranio_nb as cn
+from cranio_nb.errors import NoOpening
 from cranio_nb.output.nifti_files import write_nifti
 from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import run_design
@@ -24,6 +25,15 @@ def test_a_survey_is_that_of_the_bone_in_the_frame_it_names(phantom):
         assert one.verdict == other.verdict
         np.testing.assert_array_equal(one.opening.sheet.voxels, other.opening.sheet.voxels)
         np.testing.assert_array_equal(one.opening.head_axes, seen.frame.ray_axes)
+
+
+def test_that_a_skull_is_closed_is_said_with_the_second_one_that_may_be_open(phantom):
+    closed, holed = phantom("burr_hole"), phantom("burr_hole")
+    seen = survey_scan(cn.Volume(np.concatenate([closed.complete, holed.bone], axis=2), closed.affine))
+    assert {"ThickSlices", "SecondSkull"} <= {one.code for one in seen.remarks}
+    assert not seen.found
+    with pytest.raises(NoOpening, match=r"there is nothing to close.*12 mm wide.*second skull"):
+        seen.choose()
 
 
 @pytest.mark.parametrize("method", ["reflection", "thin-plate"])

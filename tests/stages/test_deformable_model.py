@@ -280,3 +280,17 @@ def test_the_papers_settings_stop_after_about_the_papers_number_of_steps():
     assert relaxed.converged.all()
     assert 31 <= relaxed.n_iter.min() < 147  # the paper gives no gap width, so only the order of magnitude can agree
     assert relaxed.n_iter.max() < 2 * 147
+
+
+def test_no_more_snaxels_are_moved_than_allowed_and_what_moved_on_is_not_at_rest():
+    """Two curves of 21 snaxels: one rests at once, the other is stopped."""
+    still = np.stack([np.linspace(0, 100, 21), np.zeros(21)], axis=1)
+    slopes = np.array([[5.0, 0.0], [5.0, 0.0]])
+    start, pressure = np.stack([still, still]), np.array([0.0, 0.01])
+    free = inflate(start, slopes, pressure=pressure, tol=1e-9)
+    assert free.converged.all() and free.n_iter[1] > 50 > free.n_iter[0]
+    stopped = inflate(start, slopes, pressure=pressure, tol=1e-9, max_moves=21 * (free.n_iter[0] + 50))
+    assert stopped.n_iter.sum() * 21 == 21 * (free.n_iter[0] + 50) and stopped.converged.tolist() == [True, False]
+    enough = inflate(start, slopes, pressure=pressure, tol=1e-9, max_moves=21 * free.n_iter.sum())
+    np.testing.assert_array_equal(enough.curve, free.curve)
+    assert enough.converged.all()

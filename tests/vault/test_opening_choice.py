@@ -4,6 +4,7 @@ import pytest
 from judged_openings import opening
 
 from cranio_nb.errors import InputRefused, NoOpening
+from cranio_nb.readers import Finding
 from cranio_nb.vault.opening_choice import check_intact, choose_openings, cut_openings
 
 FOUND = (opening(1, "natural"), opening(2, "cut"), opening(3, "doubtful"), opening(4, "cut"))
@@ -40,6 +41,15 @@ def test_without_any_that_was_cut_the_doubtful_ones_are_listed():
     assert refused.value.code == "NoOpening"
     for part in ("pening 3", "left", "planes 4:7", "doubtful", "confidence 0.40", "It is in doubt."):
         assert part in refused.value.message
+
+
+@pytest.mark.parametrize("found", [(), FOUND[:1], (FOUND[0], FOUND[2])])
+def test_that_there_is_no_opening_is_said_with_what_the_scan_cannot_show(found):
+    said = (Finding("A", "warning", "The slices are thick."), Finding("B", "info", "The head is straight."))
+    with pytest.raises(NoOpening) as refused:
+        choose_openings(found, smallest_mm=16.0, said=said)
+    message = refused.value.message
+    assert "this scan can show for sure is 16 mm wide. The slices are thick." in message and "straight" not in message
 
 
 def test_what_reaches_the_edge_of_the_image_is_refused_only_where_it_is_to_be_closed():

@@ -7,9 +7,10 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused, NoOpening
-from cranio_nb.vault.opening_search import find_openings
+from cranio_nb.stages.segmentation import bone_of
+from cranio_nb.vault.opening_search import find_openings, survey_openings
 from cranio_nb.volume import Volume
-from data_synth import DEFECTS, scan
+from data_synth import DEFECTS, Pose, face_case, scan
 
 OPEN = [name for name in DEFECTS if name != "partial"]
 
@@ -180,3 +181,56 @@ def test_the_bone_is_not_modified(phantom, skull):
     before = phantom("unilateral").bone.copy()
     find_openings(skull("unilateral"))  # its arrays are read-only
     np.testing.assert_array_equal(phantom("unilateral").bone, before)
+
+
+# heads with three holes each, the last 12 to 14 mm wide: below the vault's border, blurred, filled where it is cut flat
+HARDLY_SHOWN = [
+    (20074, Pose(-17.000212419345093, -20.801298054095, 133.08742685568063), 4.603194502028268, ("holder",)),
+    (20105, Pose(-17.08083568591129, 74.28321352455391, 5.526829291196151), 4.461219045, ("holder", "tube")),
+    (21024, Pose(-16.94148617278539, 13.492497693373366, -16.948865211466426), 2.4918526903551323, ()),
+]
+
+
+@pytest.mark.parametrize(("seed", "pose", "slice_mm", "around"), HARDLY_SHOWN)
+def test_a_hole_that_the_slices_hardly_show_is_doubtful_and_not_left_out(seed, pose, slice_mm, around):
+    case = face_case("tiny", seed, holes=3, pose=pose, slice_mm=slice_mm, reach="vault", around=around)
+    scan = Volume(case.hu, case.affine)
+    found = survey_openings(bone_of(scan), scan=scan)
+    assert [one.verdict.kind for one in found] == ["cut", "cut", "doubtful"]
+    assert [one.number for one in found] == [1, 2, 3]
+    # each over a hole of its own
+    labels, _ = ndimage.label(case.implant, np.ones((3, 3, 3)))
+    near = ndimage.grey_dilation(labels, size=(3, 5, 5))
+    assert len({np.bincount(near[one.opening.sheet.voxels])[1:].argmax() for one in found}) == 3
+
+
+@pytest.mark.parametrize("diameter_mm", [6.0, 9.0, 12.0])
+def test_in_thick_slices_a_small_hole_is_named_and_in_thin_ones_what_is_too_small_is_none(diameter_mm):
+    """A ball of bone with one round hole above it."""
+    for slice_mm, least_mm in ((1.0, 8.0), (4.5, 6.0)):
+        found = survey_openings(holed_ball(diameter_mm, slice_mm))
+        assert bool(found) == (diameter_mm >= least_mm)
+
+
+def test_a_hole_that_is_filled_as_a_pore_of_slices_that_cut_it_flat_is_named():
+    """55 mm2, less than the pores of the diploe that are filled, at the top of a ball of bone."""
+    scan = holed_ball(8.4, 1.0, at_top=True)
+    bone = bone_of(scan)
+    assert (bone.voxels & ~scan.voxels).any() and not survey_openings(bone)
+    (found,) = survey_openings(bone, scan=scan)
+    assert found.verdict.kind == "doubtful" and found.opening.direction[2] > 0.99
+    hu = scan.with_voxels(np.where(scan.voxels, 1000, 40).astype(np.int16))
+    assert [one.verdict for one in survey_openings(bone, scan=hu)] == [found.verdict]
+
+
+def holed_ball(diameter_mm, slice_mm, *, at_top=False):
+    """A hollow ball of 75 mm, its wall 6 mm, with a hole at its side or its top."""
+    z, y, x = (np.arange(-84.0, 84.1, step) for step in (slice_mm, 1.5, 1.5))
+    z, y, x = z[:, None, None], y[:, None], x
+    away = np.sqrt(x**2 + y**2 + z**2)
+    bone = (
+        (away <= 75)
+        & (away >= 69)
+        & ~((np.hypot(y, x if at_top else z) <= diameter_mm / 2) & ((z if at_top else x) > 0))
+    )
+    return Volume(bone, np.array([[0, 0, 1.5, 0], [0, 1.5, 0, 0], [slice_mm, 0, 0, 0], [0, 0, 0, 1.0]]))

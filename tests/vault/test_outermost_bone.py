@@ -7,7 +7,7 @@ import pytest
 
 from cranio_nb.vault.opening_search import survey_openings
 from cranio_nb.vault.orientation import head_axes
-from cranio_nb.vault.outermost_bone import measure_outermost_bone, open_rays, room_in_image
+from cranio_nb.vault.outermost_bone import measure_outermost_bone, open_rays, room_in_image, vertex_rays
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -15,8 +15,12 @@ SIDES = {"left": (2, -1), "right": (2, 0), "front": (1, 0), "back": (1, -1), "to
 """The image's end at each side of the head: axis, and first or last."""
 
 
+def measured(bone, axes):
+    return measure_outermost_bone(bone, vertex_rays(bone, axes))
+
+
 def test_the_outermost_bone_is_the_outer_skull(phantom, skull):
-    case, found = phantom("unilateral"), measure_outermost_bone(skull("unilateral"), head_axes(skull("unilateral")))
+    case, found = phantom("unilateral"), measured(skull("unilateral"), head_axes(skull("unilateral")))
     np.testing.assert_allclose(np.linalg.norm(found.grid.directions, axis=-1), 1, atol=1e-12)
     known = np.isfinite(found.radius) & found.within(60)
     p = found.grid.points(found.radius)[known] - case.head.centre
@@ -79,7 +83,7 @@ def test_a_ball_with_a_hole_lies_in_its_image_until_the_missing_cap_leaves_it():
     room_mm = []
     for n_cols in (166, 168, 172, 176):  # the ball ends with column 90 + 76
         part = ball.crop((slice(None), slice(None), slice(n_cols)))
-        outermost = measure_outermost_bone(part, np.eye(3))
+        outermost = measured(part, np.eye(3))
         (rays,) = (r for r in open_rays(outermost, 8.0) if outermost.grid.directions[r].mean(axis=0)[0] > 0.9)
         room_mm.append(room_in_image(outermost, rays))
     # the cap reaches 76 mm from the middle; rays end half a voxel beyond the last column and take steps of 0.75 mm

@@ -52,6 +52,7 @@ def inflate(slices: Sequence[SliceResult], inside: NDArray[np.float64], settings
         dt=settings.dt,
         tol=settings.tol,
         max_iter=settings.max_iter,
+        max_moves=settings.max_moves,
     )
     # back into the slices
     facts = (np.degrees(angles[..., 0]), np.degrees(angles[..., 1]), length, relaxed.n_iter, relaxed.converged)

@@ -63,6 +63,10 @@ WORK = Work(
 )
 """The balloons that do not come to rest decide how long a design can take."""
 
+MOST_MOVES = 40_000_000
+"""Steps of single points in a design, some seconds: how many slices an opening has is not known before, nor how many
+steps a small `tol` takes. Balloons that move on then are stopped and said not to be at rest."""
+
 
 def pieces(
     bone: Volume,
@@ -129,7 +133,7 @@ def pieces(
     # the balloon's k is a length per index squared, so that it changes with the unit of the slices
     unit = float(bone.spacing[1:].mean()) if axial else 1.0  # mm per unit of the slices
     pressure = None if pressure_mm is None else pressure_mm / unit
-    settings = Settings(n_snaxels, pressure, tension, rigidity, dt, tol, max_iter)
+    settings = Settings(n_snaxels, pressure, tension, rigidity, dt, tol, max_iter, MOST_MOVES / max(1, len(openings)))
     for opening in openings:
         made: tuple[SlicedDesign, ...]
         if axial:

@@ -26,7 +26,7 @@ class Settings:
         Points of a balloon, ends included.
     pressure : float or None
         Constant k per index squared, outward positive; None where k follows from the end tangents.
-    tension, rigidity, dt, tol, max_iter
+    tension, rigidity, dt, tol, max_iter, max_moves
         As for `deformable_model.inflate`.
     """
 
@@ -37,6 +37,7 @@ class Settings:
     dt: float
     tol: float
     max_iter: int
+    max_moves: float = np.inf
 
 
 @dataclass(frozen=True)
