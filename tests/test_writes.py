@@ -21,6 +21,7 @@ METHODS = set(
 )
 REASONS = {
     ("output/guard.py", "TemporaryFile"): "tries whether the disk takes files; has no name and goes at once",
+    ("output/painter.py", "dump"): "into the pipe of the process that draws, and back",
     ("output/mesh_files.py", "export"): "to bytes: a file type is given and no file",
     ("pipeline/trial.py", "TemporaryDirectory"): "masks for a child process, in the system's folder of such files",
     ("pipeline/trial.py", "save"): "into that folder",
