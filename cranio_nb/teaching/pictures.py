@@ -27,6 +27,7 @@ from ..drawing.palette import (
     SKULL,
     TRUTH,
     VERMILLION,
+    faded,
     rgb_shares,
 )
 from ..drawing.scene3d import show_meshes as show_scene
@@ -68,6 +69,7 @@ LINES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"), (BLACK, 
 MASKS = {
     "bone": (BONE, "bone"),
     "patch": (PATCH, "patch"),
+    "between": (faded(PATCH), "between the curves"),
     "right": (PATCH, "patch on missing bone"),
     "missing": (TRUTH, "missing bone, no patch"),
     "extra": (BLUE, "patch, no missing bone"),
