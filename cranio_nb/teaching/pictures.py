@@ -45,6 +45,7 @@ __all__ = [
     "GREEN",
     "LINES",
     "MASKS",
+    "MIDDLE_GREY",
     "SKULL",
     "axes",
     "key",
