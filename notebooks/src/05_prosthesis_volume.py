@@ -156,8 +156,8 @@ if case.truth is not None:
 # (Dice, of lesson 00, says how well the patch and the missing bone overlap: 1 is perfect. HD95: 95 % of the distances
 # between their surfaces are smaller; lesson 07.) Both are poor for a hole whose rim is all there to be seen. It is not
 # the filling that fails: the curves run inside the true ones. How far? We measure the outer curve against the true one
-# in every second slice, above the true chord and away from its ends. One head is one draw, so we take two more, of another shape and with
-# other noise.
+# in every second slice, above the true chord and away from its ends. One head is one draw, so we take two more, of
+# another shape and with other noise.
 
 # %%
 heads = [(case, bone, openings)]
