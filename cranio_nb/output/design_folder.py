@@ -53,7 +53,7 @@ def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
     -------
     RunResult
     list of Future
-        Promises of its `design_page.page_shots`, for `write_outputs`.
+        Promises of its pictures, for `write_outputs`.
 
     Raises
     ------
