@@ -95,9 +95,10 @@ def stages(source: str, method: str, out: str) -> Figures:
     files.write_json(Path(out) / "design.json", design_record(result))
     timed.lap("record")
     without = sum(timed.seconds.values())
-    from cranio_nb.output.design_page import page_shots, report_page
+    from cranio_nb.output.design_page import measure_shots, report_page
+    from cranio_nb.output.design_pictures import shape_shots, vault_of
 
-    report_page(result, page_shots(result))
+    report_page(result, shape_shots(case, vault_of(case), result.prosthesis) | measure_shots(result))
     timed.lap("report")
     return timed.seconds | {"without report": without}
 

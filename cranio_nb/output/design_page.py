@@ -23,26 +23,11 @@ from ..pipeline.input_digest import case_label
 from ..pipeline.run import RunResult, parameters_used
 from ..prosthesis import DistanceStats
 from ..vault.verdict import rule_rows
-from .design_pictures import distance_shots, shape_shots, vault_of
+from .design_pictures import distance_shots
 from .error_pictures import error_shots, largest_errors
 from .pages import Shot, page_template
 
 _NAMES = {"theta0": "θ₀ (degrees)", "theta1": "θ₁ (degrees)", "n_iter": "Steps of the balloon"}
-
-
-def page_shots(result: RunResult) -> dict[str, list[Shot]]:
-    """All pictures of a run.
-
-    Parameters
-    ----------
-    result : RunResult
-
-    Returns
-    -------
-    dict of str to list of Shot
-        Name of a part of the page -> its pictures.
-    """
-    return shape_shots(result.case, vault_of(result.case), result.prosthesis) | measure_shots(result)
 
 
 def measure_shots(result: RunResult) -> dict[str, list[Shot]]:
@@ -67,7 +52,7 @@ def report_page(result: RunResult, shots: Mapping[str, Sequence[Shot]]) -> str:
     ----------
     result : RunResult
     shots : dict of str to sequence of Shot
-        Its `page_shots`.
+        What `design_pictures.shape_shots` and `measure_shots` drew of it.
 
     Returns
     -------

@@ -124,11 +124,6 @@ def run_design(
     if designed is not None:
         designed(made)
     report("measuring", 0.8)
-    return _measured(case, preset, made, clock)
-
-
-def _measured(case: Prepared, preset: str, made: Prosthesis, clock: Clock) -> RunResult:
-    """The run with its measures: mesh, rim, truth where there is one, and what they say to the user."""
     mesh = check_mesh(made.mesh)
     rim = rim_gap(made.surface(RIM), case.bone) if (made.sides == RIM).any() else None
     check = None if case.truth is None else check_truth(made, case.truth, case.bone, case.openings[0].head_centre)

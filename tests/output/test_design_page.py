@@ -7,14 +7,15 @@ import pytest
 from html_page import Page, assert_pictures_have_words, assert_self_contained, assert_structured_for_reading_aloud
 
 from cranio_nb.evaluation.paper_tables import PAPER_BALLOONS, balloon_ranges
-from cranio_nb.output import design_page
+from cranio_nb.output import design_page, design_pictures
 from cranio_nb.output.design_pictures import N_SLICES
 from cranio_nb.pipeline.run import RunResult
 from cranio_nb.readers import Finding
 
 
 def page_of(result) -> str:
-    return design_page.report_page(result, design_page.page_shots(result))
+    shapes = design_pictures.shape_shots(result.case, design_pictures.vault_of(result.case), result.prosthesis)
+    return design_page.report_page(result, shapes | design_page.measure_shots(result))
 
 
 @pytest.fixture(scope="module")

@@ -55,7 +55,11 @@ def new_figure(width_in: float, height_in: float) -> tuple[Figure, Axes]:
     >>> ax.get_window_extent().size.tolist()
     [330.0, 220.0]
     """
-    figure = _empty_figure(width_in, height_in)
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width_in, height_in), dpi=DPI)
+    FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     axes.set_axis_off()
     return figure, axes
@@ -73,15 +77,10 @@ def laid_out_figure(width_in: float, height_in: float) -> Figure:
     -------
     Figure
     """
-    return _empty_figure(width_in, height_in, layout="constrained")
-
-
-def _empty_figure(width_in: float, height_in: float, **options: Any) -> Figure:
-    """A figure without axes that no window knows."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(width_in, height_in), dpi=DPI, **options)
+    figure = Figure(figsize=(width_in, height_in), dpi=DPI, layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 
@@ -269,8 +268,9 @@ def colour_bar_figure(top_mm: float, label: str) -> Figure:
     -------
     Figure
     """
-    figure = _empty_figure(3.6, 0.62)
-    axes = figure.add_axes((0.05, 0.62, 0.9, 0.26))
+    figure, axes = new_figure(3.6, 0.62)
+    axes.set_axis_on()
+    axes.set_position((0.05, 0.62, 0.9, 0.26))
     bar = figure.colorbar(colour_scale(top_mm), cax=axes, orientation="horizontal", extend="max")
     bar.ax.tick_params(labelsize=8)
     bar.set_label(label, fontsize=8)
