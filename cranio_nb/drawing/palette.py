@@ -84,7 +84,7 @@ def rgb_shares(colour: str) -> NDArray[np.float64]:
     >>> rgb_shares("#FF0033").tolist()
     [1.0, 0.0, 0.2]
     """
-    return np.array(rgb_of(colour)) / 255
+    return np.frombuffer(bytes.fromhex(colour[1:]), np.uint8) / 255
 
 
 def faded(colour: str) -> str:
