@@ -31,7 +31,7 @@ from . import marks
 _ROW, _COLUMN = 0.4, 2.67  # inches from one mark to the next
 _MARK = 0.62  # width of a mark
 _ROWS = 5
-_LETTER = 0.078  # width of a letter of the words, on average
+_LETTER = 0.07  # width of a letter of the words, on average
 MEANINGS = (
     ("bone", "area", BONE),
     ("patch of a slice", "area", PATCH),
@@ -83,12 +83,12 @@ def key_row(figure: Figure, height_in: float, meanings: Sequence[str]) -> None:
     """
     ax = marks.plane(figure, (0, 0, 1, _ROW / height_in), (0, 0), marks.WIDTH_IN)
     known = {meaning: (kind, colour) for meaning, kind, colour in MEANINGS}
-    x = 0.08
+    x = 0.05
     for meaning in meanings:
         words = meaning.partition(";")[0]
         mark(ax, *known[meaning], x, _ROW / 2, length=0.32)
         marks.word(ax, (x + 0.4, _ROW / 2), words, size=NOTE_PT, ha="left")
-        x += 0.64 + _LETTER * len(words)
+        x += 0.58 + _LETTER * len(words)
 
 
 def mark(ax: Axes, kind: str, colour: str, x: float, y: float, *, length: float = _MARK) -> None:
