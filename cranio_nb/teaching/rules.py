@@ -219,7 +219,9 @@ def _by_place(trial: Trial) -> str:
                 if _within(wrong, masks) and not _within(could, masks):
                     return f"All that is {words} lies in `{name}`."
                 outside = [~m for m in masks]
-                if _within(wrong, outside) and not _within(could, outside):
+                # an answer that holds all of a mask lacks nothing in it: that says nothing of the cause
+                whole = words == "missing" and _within(masks, [a for a, _ in pairs])
+                if _within(wrong, outside) and not _within(could, outside) and not whole:
                     return f"All that is {words} lies outside `{name}`."
     return ""
 

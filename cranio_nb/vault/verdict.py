@@ -38,6 +38,8 @@ class Signs:
         Median thickness of the rim.
     frame : float
         Confidence in how the head lies.
+    with_hu : bool
+        Whether `across_mm` was measured in HU; a mask shows no bone below the threshold.
     """
 
     diameter_mm: float
@@ -46,6 +48,7 @@ class Signs:
     two_walls: float
     rim_mm: float
     frame: float
+    with_hu: bool = True
 
 
 @dataclass(frozen=True)
@@ -148,7 +151,9 @@ RULES = (
         lambda s: Verdict(
             False,
             0.6 + 0.4 * min(s.on_vault, s.frame),
-            "Soft all through, in the vault, with a single wall around it.",
+            "Soft all through, in the vault, with a single wall around it."
+            if s.with_hu
+            else "In the vault, with a single wall around it; whether it is soft all through only HU can tell.",
         ),
     ),
 )

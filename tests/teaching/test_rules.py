@@ -42,6 +42,7 @@ def test_numbers(wrong, words):
         (lambda bone, region: region | (bone & ~region), "All that is too much lies in `bone`."),
         (lambda bone, region: ~bone & (region | ~region), "All that is too much lies outside `bone`."),
         (lambda bone, region: region & ~bone & (GRID.sum(axis=0) > 4), ""),
+        (lambda bone, region: (region & ~bone & (GRID.sum(axis=0) > 4)) | ~region, "lies outside `region`"),
         (lambda bone, region: ~(region & ~bone), "Inside out"),
         (lambda bone, region: (region & ~bone) * 2, "compare them"),
     ],
