@@ -21,7 +21,7 @@ import numpy as np
 
 from .diagnosis import diagnose, error_of
 from .exercises import EXERCISES, Exercise
-from .rules import Trial
+from .rules import Trial, as_numbers
 from .side_by_side import side_by_side
 from .time_limit import TookTooLongError, call_within
 from .verdict import Verdict
@@ -138,9 +138,12 @@ def _compared(task: Exercise, yours: Any, mine: Any) -> str:
         return side_by_side(yours, mine, task.answer.unit)
     show, unit = task.answer.shows
     try:
-        return side_by_side(show(yours), show(mine), unit)
+        shown = show(yours)
     except Exception:  # whatever a function of ours meets in an answer of any form
         return side_by_side(yours, mine)
+    if as_numbers(shown) is None:  # what was given has a name of its own, what was made of it has none
+        return side_by_side(yours, mine)
+    return side_by_side(shown, show(mine), unit)
 
 
 def _hint(task: Exercise, stage: Any) -> str:

@@ -65,7 +65,7 @@ def rule_for(trial: Trial) -> str:
     >>> rule_for(Trial(lambda r, h: r, [(1.0, 2.0), (3.0, 5.0)], [2.0, 15.0], [1.0, 3.0]))
     'Each of your numbers is right but for a factor that goes with 1 / h.'
     """
-    for rule in (_by_argument, _by_form, _by_mask, _by_order, _by_number, _by_power, _by_unused, _by_place):
+    for rule in (_by_argument, _by_field, _by_form, _by_mask, _by_order, _by_number, _by_power, _by_unused, _by_place):
         if sentence := rule(trial):
             return sentence
     return ""
@@ -124,6 +124,17 @@ def _by_argument(trial: Trial) -> str:
     for name, values in trial.arguments:
         if all(isinstance(v, np.ndarray) and np.array_equal(f, v) for f, v in zip(trial.found, values, strict=True)):
             return f"This is `{name}`, as it was given."
+    return ""
+
+
+def _by_field(trial: Trial) -> str:
+    """A field of an object that has the form of the answer."""
+    kind = type(trial.found[0])
+    for name in getattr(kind, "__dataclass_fields__", None) or getattr(kind, "_fields", ()):
+        parts = [as_numbers(getattr(value, name, None)) for value in trial.found]
+        wanted = [np.shape(right) for right in trial.right]
+        if all(part is not None and part.shape == shape for part, shape in zip(parts, wanted, strict=True)):
+            return f"This is a {kind.__name__}, which holds more than was asked for: take its `.{name}`."
     return ""
 
 
@@ -219,7 +230,9 @@ def _by_place(trial: Trial) -> str:
                 if _within(wrong, masks) and not _within(could, masks):
                     return f"All that is {words} lies in `{name}`."
                 outside = [~m for m in masks]
-                if _within(wrong, outside) and not _within(could, outside):
+                # an answer that holds all of a mask lacks nothing in it: that says nothing of the cause
+                whole = words == "missing" and _within(masks, [a for a, _ in pairs])
+                if _within(wrong, outside) and not _within(could, outside) and not whole:
                     return f"All that is {words} lies outside `{name}`."
     return ""
 

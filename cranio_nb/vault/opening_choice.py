@@ -80,7 +80,7 @@ class JudgedOpening:
         edge = f" {self.edge}" if self.edge else ""
         return (
             f"opening {self.number} ({size.place}, {size.length:.0f} x {size.width:.0f} mm,"
-            f" planes {size.planes[0]}:{size.planes[1]}): {verdict.kind}, confidence {verdict.confidence:.2f}."
+            f" planes {size.planes[0]} to {size.planes[1]}): {verdict.kind}, confidence {verdict.confidence:.2f}."
             f" {verdict.reason}{edge}"
         )
 

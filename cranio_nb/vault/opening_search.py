@@ -170,6 +170,7 @@ def _signs(
         two_walls=float(is_bone[:, depths < -_WALL_MM].any(axis=1).mean()),
         rim_mm=float(np.median(is_bone[:, depths >= -_WALL_MM].sum(axis=1) * 0.5)),
         frame=frame.confidence,
+        with_hu=material.volume.voxels.dtype != bool,
     )
 
 

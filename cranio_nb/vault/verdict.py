@@ -40,6 +40,8 @@ class Signs:
         Confidence in how the head lies.
     plain : bool
         Whether it is wide enough for these slices and reaches into the vault; else there is no more than a hint of it.
+    with_hu : bool
+        Whether `across_mm` was measured in HU; a mask shows no bone below the threshold.
     """
 
     diameter_mm: float
@@ -49,6 +51,7 @@ class Signs:
     rim_mm: float
     frame: float
     plain: bool = True
+    with_hu: bool = True
 
 
 @dataclass(frozen=True)
@@ -159,7 +162,9 @@ RULES = (
         lambda s: Verdict(
             False,
             0.6 + 0.4 * min(s.on_vault, s.frame),
-            "Soft all through, in the vault, with a single wall around it.",
+            "Soft all through, in the vault, with a single wall around it."
+            if s.with_hu
+            else "In the vault, with a single wall around it; whether it is soft all through only HU can tell.",
         ),
     ),
 )

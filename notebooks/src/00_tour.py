@@ -46,7 +46,8 @@ from cranio_nb.teaching import check, classroom, diagrams, widgets
 #
 # `classroom.load` makes a synthetic head with a hole, so you need no data and no network. It is a simple head: skin,
 # skull and brain, without a face. A CT is a box of numbers in **Hounsfield units** (HU): air is -1000, water 0, bone
-# several hundreds and more. Each value is measured with some noise, so single voxels of air lie below -1000.
+# several hundreds and more. Each value is measured with some noise, so single voxels of air lie below -1000; the file
+# holds no value below -1024, so there they end. A **slice** is the picture of one **plane** of voxels.
 #
 # *The switch:* `"class"` takes seconds; `"full"` is the size of the paper's scan (512 x 512 x 68);
 # `classroom.load(scan="path/to/your/scan")` takes your own (DICOM folder, NIfTI or NRRD).
@@ -74,7 +75,8 @@ viewer
 # ## 2. Bone (stage 1)
 #
 # Everything from 400 HU up is bone: so the paper has it, and lesson 02 asks what difference the number makes. Then the
-# couch and loose specks are dropped and small holes are closed.
+# couch under the head and loose specks are dropped and small holes are closed. What comes out is a **mask**: True where
+# a voxel is bone, False elsewhere.
 
 # %% tags=["nbval-check-output"]
 bone = cn.segment(ct, threshold=400)
@@ -106,9 +108,10 @@ diagrams.ray_fan(bone, openings[0])
 #
 # The slice is turned so that the **chord**, the straight line between the ends, lies level (thin grey dashes). The
 # orange dashes are the curve that the balloon starts from. It is made from the ends and their tangents and is a good
-# guess already, so little is left to inflate. The broad pale line is the bone that is missing, known because this head
-# is synthetic. The two plots below (`||dc||` and the energy) tell how the balloon comes to rest; lesson 04
-# explains them. You see the balloon at rest; where there is a button to play it, watch it again from step 0.
+# guess already, so little is left to inflate. The broad pale line is the outer edge of the bone that is missing, known
+# because this head is synthetic. The two plots below (`||dc||` and the energy) tell how the balloon comes to rest;
+# lesson 04 explains them, and the letters of the caption and of the controls too. You see the balloon at rest; where
+# there is a button to play it, watch it again from step 0.
 
 # %% tags=["nbval-check-output"]
 # px along the bone: leave out the ragged first 3, fit the tangent to the next 10
@@ -135,7 +138,7 @@ player.set(preset="tangent pressure: k from the ends", step=300)
 # high instead of 7.2. With k = -0.1 the wind blows the other way, and the curve sinks below the chord. The clamp at
 # each end holds the tangent over about one snaxel (a dot of the curve) only; further on the wind wins. So the curve
 # becomes a flat S: next to the steeper end it is still 0.6 px above the chord, and further on 2.8 px below. The energy
-# falls at first (from 165.5 to 159.6 px2, step 20) and then *rises* (to 160.3): energy is what the bent and stretched
+# falls at first (from 165.5 to 158.9 px2, step 38) and then *rises* (to 160.3): energy is what the bent and stretched
 # curve holds, and the wind does work on it. Lesson 04 has this account, and tells which `k` fits and why.
 #
 # </details>
@@ -144,13 +147,18 @@ player.set(preset="tangent pressure: k from the ends", step=300)
 
 # %% tags=["nbval-check-output"]
 again = widgets.balloon(outer, inside)
-for k, step in ((0.062, 300), (-0.1, 0), (-0.1, 20), (-0.1, 300)):
+for k, step in ((0.062, 300), (-0.1, 0), (-0.1, 38), (-0.1, 300)):
     print(again.set(pressure=k, step=step).view.line)
 
 # %% [markdown]
 # ## 5. All slices (stage 4), and the surface (stage 5)
 #
-# `design` does this for the whole hole, fills between the curves, and wraps the filled voxels in triangles.
+# `design` closes the whole hole so: it lets curves bulge in many slices, fills between them, and wraps the filled voxels
+# in triangles. Its slices are not those of the scan, as in section 4 and in the paper, but planes through the hole in
+# six directions. Lesson 05 shows why this comes nearer (`axial=True` would take the scan's own).
+#
+# *Can be built* means: the surface is closed, in one sense outward, and no two triangles pass through each other
+# (lesson 06).
 
 # %% tags=["nbval-check-output"]
 prosthesis = cn.design(bone, openings)
@@ -180,7 +188,7 @@ cn.show(bone, prosthesis)
 #
 # That is the whole way: a scan went in, a solid came out. Here it is in one picture, drawn from what this notebook made.
 # Each stage has the name of its module in `cranio_nb.stages`; the frame in the second picture is what the next three
-# show from near by.
+# show from near by: one slice of the scan, as in section 4.
 
 # %% tags=["nbval-check-output"]
 diagrams.pipeline(ct, bone, openings[0], prosthesis)

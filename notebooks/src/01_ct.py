@@ -112,7 +112,8 @@ if case.phantom is not None:
 #
 # $$(x, y, z)^T = A_{3\times3}\,(p, r, c)^T + \text{origin}$$
 #
-# DICOM's axes are **LPS**: x to the patient's left, y to the back (posterior), z up (superior).
+# The fourth row, 0 0 0 1, says nothing; with it one product with (p, r, c, 1) does both, step and origin. DICOM's axes
+# are **LPS**: x to the patient's left, y to the back (posterior), z up (superior).
 
 # %% tags=["nbval-check-output"]
 print(np.round(ct.affine, 2))
@@ -159,7 +160,8 @@ print(f"normal {normal}, height of the first file's slice {position @ normal:.2f
 # say so, or refuse it. The fourth, *silently wrong*, is the one to fear. We try three faults.
 #
 # **Predict** for each which answer you would want: (a) file names in random order, (b) a scanner that leans by 15
-# degrees (gantry tilt), (c) one file missing in the middle.
+# degrees (gantry tilt), (c) one file missing in the middle. (The **kernel** in the output says how sharply the scanner
+# turned its measurements into a picture: a soft one has less noise, a sharp one clearer edges.)
 
 # %% tags=["nbval-check-output"]
 tilted = classroom.synthetic("class", tilt_deg=15.0).phantom
@@ -190,11 +192,14 @@ for name, path in (("shuffled", folder), ("tilted", leaning)):
 
 # %% tags=["nbval-check-output"]
 lean = np.radians(15)
-apart = 2.5 * np.cos(lean)  # mm along the normal
-slid = (len(files) - 1) * 2.5 * np.sin(lean)  # mm, the last slice against the first
-rows = slid / 0.9
-print(f"{apart:.2f} mm apart; moved by {slid:.1f} mm = {rows:.1f} rows,", end=" ")
-print(f"so {np.ceil(rows):.0f} rows more: {one.Rows + np.ceil(rows):.0f} instead of {one.Rows}")
+n_slices, n_rows, _ = tilted.hu.shape
+couch, row, _ = np.linalg.norm(tilted.affine[:3, :3], axis=0)  # mm: lengths of the steps
+apart = couch * np.cos(lean)  # mm along the normal
+slid = (n_slices - 1) * couch * np.sin(lean)  # mm, the last slice against the first
+more = np.ceil(slid / row)
+print(f"couch {couch:.1f} mm, slices {apart:.2f} mm apart;", end=" ")
+print(f"moved by {slid:.1f} mm = {slid / row:.1f} rows,", end=" ")
+print(f"so {more:.0f} rows more: {n_rows + more:.0f} instead of {n_rows}")
 
 # %% [markdown]
 # ## A mistake to make once
@@ -219,8 +224,8 @@ for finding in report.findings:
 # %% [markdown]
 # ## Exercises
 #
-# **Exercise 1.1.** Windowing. Return grey levels from 0 to 255 (floats or integers): 0 at centre - width / 2 and below,
-# 255 at centre + width / 2 and above.
+# **Exercise 1.1.** Windowing. Return grey levels from 0 to 255 (floats or integers): exactly 0 at centre - width / 2 and
+# below, exactly 255 at centre + width / 2 and above, and rising evenly between.
 
 
 # %% tags=["solution"]

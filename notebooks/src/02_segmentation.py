@@ -57,7 +57,8 @@ print(f"a pixel is {px:.1f} mm wide")
 # ## 1. The threshold
 #
 # **Predict, then move, then explain.** What changes *most* if you raise the threshold from 400 to 800 HU: the outline
-# of the bone, or its inside? (No sliders? Use `panel.set(threshold_hu=800)` in a new cell.)
+# of the bone, or its inside? (No sliders? Use `panel.set(threshold_hu=800)` in a new cell. The chart at the right counts
+# voxels of the whole scan; that of lessons 00 and 01 those of one slice.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.threshold(ct)
@@ -199,25 +200,38 @@ pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} afte
 # %% [markdown]
 # ## 5. Which hole was cut?
 #
-# A mask has more holes than the surgeon made: orbits, nose and foramina at the base, and places where bone is so thin
-# that its HU stay under the threshold. A prosthesis for such a hole would be worse than none. So each opening gets a
-# **verdict**: *cut*, *natural*, or *doubtful* where the signs do not suffice, with a **confidence** between 0 and 1 and
-# a reason. What was cut is closed; doubtful ones are listed and left to you (`--opening N` on the command line, with
-# the number of the list). The signs are taken in the head's own frame, found from the bone, so that it does not matter
-# how the head lies. This is the whole rule; the first line that holds decides:
+# A mask has more holes than the surgeon made: natural ones, and places where bone is so thin that its HU stay under the
+# threshold. A prosthesis for such a hole would be worse than none. So each opening gets a **verdict**: *cut*, *natural*,
+# or *doubtful* where the signs do not suffice, with a **confidence** between 0 and 1 and a reason. What was cut is
+# closed; doubtful ones are listed and left to you: `cranio-nb design path/to/scan --opening 2 --out folder` closes the
+# second of the list.
+#
+# Some words first. The **vault** is the dome of the skull, a single wall. The **base** is the floor under the brain. In
+# it are *foramina*, holes for nerves, vessels and the spinal cord; before it lie the *orbits* (eye sockets), the nose
+# and the *sinuses* (hollows in the bone of the face). There one thin wall stands behind another. The **rim** is the bone
+# around an opening. Left, front and top are those of the head itself, read off its face, its midline and the hollow of
+# the brain, so that it does not matter how the head lies in the scanner.
+#
+# This is the whole rule; the first line that holds decides:
 
 # %% tags=["nbval-check-output"]
 for number, (when, kind, confidence) in enumerate(cn.vault.verdict.rule_rows(), 1):
     print(f"{number}. {when}\n   -> {kind}, confidence {confidence}")
 
 # %% [markdown]
-# The openings of this head, as `cranio-nb inspect` lists them:
+# The openings of this head, as `cranio-nb inspect` lists them. In brackets stands the way from the middle of the head to
+# the opening, each side by name that it plainly leads to (up to the left here), then size and planes, both ends
+# included:
 
 # %% tags=["nbval-check-output"]
 for one in cn.survey_openings(masks[2], scan=ct):
     print(one)
 
 # %% [markdown]
+# Why only 0.60, the least that rule 8 gives? Our head has no face, so nothing shows how it lies, and which part is the
+# vault rests on the axes of the scan alone. The more surely the bone shows how the head lies, and the more of the
+# opening lies above the base, the nearer the confidence comes to 1.00.
+#
 # **Predict.** We fill the missing bone with thin bone: HU above those of soft tissue, but below the threshold. The mask
 # has the same hole as before. What does the verdict say of it, from the mask alone, and with the HU?
 
@@ -235,8 +249,8 @@ if case.truth is not None:
 # <details>
 # <summary>Answer</summary>
 #
-# From the mask alone it was cut: a hole in the vault (the dome of the skull) with a single wall around it. The HU show
-# the bone. Its thickness across the hole is the excess of the HU over those of the brain, summed along a ray and
+# From the mask alone it was cut: a hole in the vault with a single wall around it. Whether something thin is left in it
+# no mask can tell, and the reason says so. The HU show the bone. Its thickness across the hole is the excess of the HU over those of the brain, summed along a ray and
 # divided by the excess of solid bone: partial volume, as in section 2, used the other way round. So give the scan
 # wherever you have it.
 #
@@ -282,7 +296,7 @@ check.exercise("2.2", fill_small_holes)
 
 # %% tags=["expected"]
 fig, (ax,) = pictures.slices(1, ct, around=[front], margin_mm=20, height=4.4, width=5.0)
-mine = fill_small_holes(raw[plane], 70)
+mine = fill_small_holes(raw[plane], round(60 / px**2))  # 60 mm2, as in section 3
 pictures.show_mask(ax, mine & ~raw[plane], px=px, meaning="filled")
 pictures.show_mask(ax, raw[plane], px=px, title="your filled holes")
 pictures.key(fig)

@@ -91,11 +91,11 @@ diagrams.chord_frame(drawn, expected_deg=expect)
 # %% [markdown]
 # This is our slice in its chord frame: the letters tell how it is turned. Both angles count from the direction of
 # `along`, so theta1 goes over the top to the arrow at the far end. "Expect" is the angle that belongs to the true bone
-# (lesson 03, section 4); the broad pale line is that bone.
+# (lesson 03, section 4); the broad pale line is the outer edge of that bone.
 #
 # ## 2. The forces
 #
-# Equation (1), with no image force, is
+# Equation (1), with no image force (a snake may be drawn to edges in an image, but in the gap there are none), is
 #
 # $$\dot c - (w_1 c')' + (w_2 c'')'' = k\,\vec n(c)$$
 #
@@ -113,7 +113,8 @@ diagrams.chord_frame(drawn, expected_deg=expect)
 #
 # Each snaxel then feels three forces. Here they are for the paper's `k` in a gap of 90 px whose ends rise at 13.8 degrees
 # (a gap in a circle, see section 3). A force has the colour of what exerts it: blue the curve, black the wind. Of the
-# blue arrows those of the tension have a full head, those of the rigidity an open one.
+# blue arrows those of the tension have a full head, those of the rigidity an open one. Arrows to one side of the curve
+# stand one on another: where the rigidity points outward, it begins at the tip of the wind.
 
 # %% tags=["nbval-check-output"]
 theta = np.radians(13.8)
@@ -215,6 +216,20 @@ for k in (-0.062, 0.062, 0.4):
 diagrams.chord_at_rest(drawn, deformable_model.PAPER_PRESSURE)
 
 # %% [markdown]
+# Mind the pixel, for `k` counts in px. Here it is taken per pixel of *ours*. Taken per pixel of the paper's size (0.45 mm,
+# as lesson 03 guesses it) the parabola is half as high in mm, in the same gap:
+
+# %% tags=["nbval-check-output"]
+for size in (case.px, 0.45):
+    wide, high = frame.length * case.px / size, deformable_model.PAPER_PRESSURE * 20**2 / 8
+    print(
+        f"pixel of {size:.2f} mm: gap {wide:.0f} px, parabola {high:.1f} px = {high * size:.1f} mm"
+    )
+
+# %% [markdown]
+# Either way the curve is too flat; how much, depends on this choice. The circles below take the paper's pixel. There a
+# gap as wide as ours, the last row, gets a third of its height, not half.
+#
 # And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of
 # 0.45 mm) and cut gaps into them.
 
@@ -268,7 +283,10 @@ for chord, made in zip(chords, paper, strict=True):
 # The true height grows with the square of the gap, more than sevenfold. The balloon's only doubles. Where do its few px
 # come from, if the parabola is 3.1 px high in every gap? From the clamp. Let $m = L\tan\theta/N$ be the slope that an
 # end is held to. The parabola starts with the slope $kN/2$ instead. Next to each end the fourth difference makes good
-# for the difference: there the rest is the parabola plus $a\,(1 - r^i)$, which has to fulfil
+# for the difference: there the rest is the parabola plus $a\,(1 - r^i)$. Two conditions fix $r$ and $a$. At rest
+# tension and rigidity of the added part balance: its second difference equals its fourth. A second difference turns
+# $r^i$ into $(r - 2 + r^{-1})\,r^i$, a fourth does so twice; so this factor equals its own square, and is 1. And the
+# clamp holds the slope across the end, $(c_1 - c_{-1})/2 = m$, with a snaxel $c_{-1}$ thought beyond it:
 #
 # $$r - 2 + r^{-1} = 1,\qquad r = \tfrac{3-\sqrt5}{2} = 0.38,\qquad a\,\tfrac{r^{-1} - r}{2} = m - \tfrac{kN}{2}$$
 #
@@ -576,8 +594,8 @@ if truth is not None:
 # %% [markdown]
 # ## Exercises
 #
-# **Exercise 4.1.** Predict the height. Return the apex in px of a balloon with pressure `k` and `n` snaxels, away from
-# the influence of its ends. Mind what N counts.
+# **Exercise 4.1.** Predict the height. Return the apex in px of a balloon with pressure `k` > 0 and `n` snaxels, away
+# from the influence of its ends (the parabola alone). Mind what N counts.
 
 
 # %% tags=["solution"]
@@ -606,7 +624,7 @@ check.exercise("4.2", pressure)
 # %% [markdown]
 # **Exercise 4.3.** Bridge the gap. Put it together: start curve, slopes per snaxel at both ends, pressure, `inflate`.
 # Return the curve (n, 2) in the chord frame. It is tried on three gaps of the synthetic head whose tangents are turned
-# by 4 and 8 degrees, as by noise, once with 9 snaxels only. Each snaxel may be 0.1 mm from the balloon at rest.
+# by 4 and 8 degrees, as by noise, once with 9 snaxels only. Each snaxel may be 0.2 px from the balloon at rest.
 
 
 # %% tags=["solution"]

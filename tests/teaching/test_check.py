@@ -150,7 +150,7 @@ def test_gives_points_for_part_of_the_cases():
 
 def test_says_how_far_off_an_unknown_answer_is_in_its_unit():
     verdict = check.exercise("4.3", lambda length, a, b, n: cubic(length, a, b, n) + np.array([0, 5.0]))
-    assert "mm; 0.1 is allowed" in verdict.message
+    assert "px; 0.2 is allowed" in verdict.message
 
 
 def test_sees_a_changed_input():

@@ -1,10 +1,13 @@
 """What holds for all answers of a function is found: an argument unused, a power of one, where a mask is wrong."""
 
+from collections import namedtuple
+
 import numpy as np
 import pytest
 
 from cranio_nb.teaching.rules import Trial, rule_for
 
+SimpleBalloon = namedtuple("SimpleBalloon", "steps curve")
 NUMBERS = [(2.0, 5), (3.0, 7), (11.0, 4)]
 GRID = np.indices((6, 6))
 BONE, REGION = GRID[0] < 3, GRID[1] < 4
@@ -42,6 +45,7 @@ def test_numbers(wrong, words):
         (lambda bone, region: region | (bone & ~region), "All that is too much lies in `bone`."),
         (lambda bone, region: ~bone & (region | ~region), "All that is too much lies outside `bone`."),
         (lambda bone, region: region & ~bone & (GRID.sum(axis=0) > 4), ""),
+        (lambda bone, region: (region & ~bone & (GRID.sum(axis=0) > 4)) | ~region, "lies outside `region`"),
         (lambda bone, region: ~(region & ~bone), "Inside out"),
         (lambda bone, region: (region & ~bone) * 2, "compare them"),
     ],
@@ -49,6 +53,14 @@ def test_numbers(wrong, words):
 def test_masks(wrong, words):
     found = said(lambda bone, region: region & ~bone, wrong, MASKS)
     assert words in found and bool(words) == bool(found)
+
+
+def test_an_object_that_holds_an_answer_of_the_right_form_is_told_so():
+    made = [SimpleBalloon(5, np.zeros((5, 2))), SimpleBalloon(7, np.zeros((7, 2)))]
+    right = [np.ones((5, 2)), np.ones((7, 2))]
+    assert "SimpleBalloon" in rule_for(Trial(max, NUMBERS[:2], right, made))
+    assert "`.curve`" in rule_for(Trial(max, NUMBERS[:2], right, made))
+    assert rule_for(Trial(max, NUMBERS[:2], [np.ones((5, 3)), np.ones((7, 3))], made)) == ""
 
 
 def test_a_function_that_is_not_written_in_python_says_nothing_of_its_arguments():

@@ -39,7 +39,7 @@ def test_without_any_that_was_cut_the_doubtful_ones_are_listed():
     with pytest.raises(NoOpening, match="--opening 3") as refused:
         choose_openings((FOUND[0], FOUND[2]))
     assert refused.value.code == "NoOpening"
-    for part in ("pening 3", "left", "planes 4:7", "doubtful", "confidence 0.40", "It is in doubt."):
+    for part in ("pening 3", "left", "planes 4 to 7", "doubtful", "confidence 0.40", "It is in doubt."):
         assert part in refused.value.message
 
 

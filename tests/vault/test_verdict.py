@@ -48,6 +48,12 @@ def test_a_plain_craniectomy_is_sure():
     assert judge(CUT).confidence == 1 and not judge(CUT).natural
 
 
+def test_without_hu_nothing_is_called_soft():
+    masked = judge(replace(CUT, with_hu=False))
+    assert "Soft all through" in judge(CUT).reason and "only HU can tell" in masked.reason
+    assert replace(masked, reason="") == replace(judge(CUT), reason="")
+
+
 def test_the_less_sure_the_frame_the_more_must_lie_on_the_vault():
     low = replace(CUT, on_vault=0.4)
     assert judge(low).kind == "cut" and judge(replace(low, frame=0.0)).kind == "doubtful"

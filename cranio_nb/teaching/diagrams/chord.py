@@ -230,7 +230,7 @@ def draw_gap(figure: Figure, gap: Gap, *, named: bool = True) -> Axes:
     if gap.truth is not None:
         truth = frame.to_chord(gap.truth)
         marks.polyline(ax, truth, faded(TRUTH), lw=7)
-        named_here["true bone"] = (truth[len(truth) // 3], (-0.04, 0.08), TRUTH_WORD)
+        named_here["edge of true bone"] = (truth[len(truth) // 3], (-0.04, 0.08), TRUTH_WORD)
     _draw_axes(ax, length, gap.px)
     marks.polyline(ax, start, START, ls=(0, (4, 1.6)))
     for text, (to, aside, colour) in named_here.items() if named else ():

@@ -39,6 +39,7 @@ from ...stages import deformable_model, feature_extraction, prosthesis_volume
 from ...volume import Volume
 from ..classroom import bridged_plane, gap_ends
 from . import marks
+from .legend import key_row
 
 STAGES = ("segmentation", "feature_extraction", "deformable_model", "prosthesis_volume", "surface_reconstruction")
 """Names of the stages and of their modules, in the paper's order."""
@@ -49,9 +50,10 @@ _MAKES = (
     "voxels between them",
     "a closed mesh",
 )
-_HEIGHT_IN = 6.1
-_TILE = (0.29, 0.375)  # width and height of a picture, as shares of the drawing
-_LEFT, _BOTTOM = (0.008, 0.355, 0.702), (0.53, 0.015)  # of the columns, and of the rows
+_HEIGHT_IN = 6.5
+_TILE = (0.29, 0.352)  # width and height of a picture, as shares of the drawing
+_LEFT, _BOTTOM = (0.008, 0.355, 0.702), (0.559, 0.076)  # of the columns, and of the rows
+_KEY = ("outer side; the prosthesis", "inner side", "patch of a slice", "end of the gap", "way the bone was going")
 _FOLLOW = {"skip_px": 3.0, "reach_px": 10.0}
 _WINDOW_HU = (-500.0, 1300.0)  # black and white
 _BESIDE_PX = 8.0  # shown beyond the ends of the gap
@@ -149,6 +151,7 @@ def pipeline(ct: Volume, bone: Volume, opening: Opening, prosthesis: Prosthesis)
     for place, draw in zip(tiles, (_scan, _segmentation, _features, _balloons, _patch), strict=False):
         draw(figure, place, steps)
     _mesh(figure, tiles[-1], bone, prosthesis.mesh)
+    key_row(figure, _HEIGHT_IN, _KEY)
     alt = (
         "Six pictures joined by arrows. A CT slice; its bone, a ring that is open at one side; the ends of the gap "
         "with their tangents; an outer and an inner curve across the gap; the patch between them; the skull, "

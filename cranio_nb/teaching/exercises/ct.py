@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from .task import Answer, Exercise, small_head
@@ -14,6 +16,21 @@ def _grey(hu, centre, width):
 def _wrapped(hu, centre, width):
     """Grey levels that were not clipped before they became uint8."""
     return np.trunc((hu - (centre - width / 2)) / width * 255) % 256
+
+
+def _grey_error(answer, right):
+    """Largest difference in grey levels; black and white can be met exactly, and count a little more."""
+    grey = np.asarray(answer, float)
+    if grey.shape != right.shape:
+        return float("inf")
+    return float((np.abs(grey - right) * np.where(np.isin(right, (0, 255)), 1.001, 1)).max())
+
+
+def _outside(hu, centre, width, *, below, above, ends):
+    """The window with other greys outside of it, or at its ends as well."""
+    low, high = centre - width / 2, centre + width / 2
+    under, over = (hu <= low, hu >= high) if ends else (hu < low, hu > high)
+    return np.where(under, below, np.where(over, above, _grey(hu, centre, width)))
 
 
 def _slices():
@@ -29,10 +46,11 @@ def _places():
 def _positions():
     tilt = np.radians(15.0)
     normal = np.array([0.0, -np.sin(tilt), np.cos(tilt)])
-    upright = np.array([[0.0, 0.0, 3.0 * k] for k in range(6)])
+    upright = np.array([[0.0, 0.0, 3.0 * k - 7.5] for k in range(6)])  # to both sides of 0
     # slice 3 is missing, and one lies too close to slice 6
     shuffled = np.array([[-100.0, -140.0, 2.5 * k - 860.0] for k in (5, -0.2, 6, 1, 6.4, 4, 2)])
-    leaning = np.array([[0.0, 0.0, 1.25 * k / np.cos(tilt)] for k in range(6)])
+    # y falls while z rises, and x says nothing of the height
+    leaning = np.array([1.25 * k * (normal + np.array([0.5, 0.1 * normal[2], -0.1 * normal[1]])) for k in range(6)])
     return [(upright, np.array([0.0, 0.0, 1.0])), (shuffled, np.array([0.0, 0.0, 1.0])), (leaning, normal)]
 
 
@@ -40,16 +58,46 @@ def _step(positions, normal):
     return float(np.median(np.diff(np.sort(positions @ normal))))
 
 
+_SPACINGS = "Spacings alone do not say which axis is which, nor how rows and columns are turned: use the matrix."
+
+
 EXERCISES: dict[str, Exercise] = {
     "1.1": Exercise(
         cases=_slices,
         right=_grey,
-        answer=Answer("an array like the slice, 0 to 255", unit="grey levels", tolerance=1.0),
+        answer=Answer("an array like the slice, 0 to 255", unit="grey levels", tolerance=1.0, error=_grey_error),
         mistakes=(
             (lambda h, c, w: (h - (c - w / 2)) / w * 255, "Values outside the window leave 0 to 255: clip them."),
             (lambda h, c, w: np.clip((h - c) / w, 0, 1) * 255, "The window starts at centre - width / 2."),
             (lambda h, c, w: np.clip((h - c + w / 2) / w, 0, 1), "This runs from 0 to 1; grey runs from 0 to 255."),
             (lambda h, c, w: 255 - _grey(h, c, w), "Black and white are swapped: bone should be bright."),
+            *(
+                (
+                    partial(_outside, below=0, above=0, ends=ends),
+                    "Above the window is white, 255, not black. (As uint8 256 becomes 0: multiply by 255.)",
+                )
+                for ends in (False, True)
+            ),
+            *(
+                (partial(_outside, below=255, above=above, ends=ends), "Below the window is black, 0, not white.")
+                for above in (0, 255)
+                for ends in (False, True)
+            ),
+            *(
+                (
+                    lambda h, c, w, clip=clip: clip((h - c + w / 2) / w * 255),
+                    "Only one end is clipped: below the window is 0, and above it 255.",
+                )
+                for clip in (lambda grey: np.minimum(grey, 255), lambda grey: np.maximum(grey, 0))
+            ),
+            (
+                lambda h, c, w: np.clip((h - c + w / 2) / w, 0, 1) * 256,
+                "0 to 255 are 256 greys, but the largest is 255: multiply by 255, not by 256.",
+            ),
+            (
+                lambda h, c, w: np.clip((h - c + w / 2) // w, 0, 1) * 255,
+                "`//` cuts to whole numbers, and no grey is left: divide by `/`.",
+            ),
             (_wrapped, "uint8 starts again at 0 after 255: clip first, then change the type."),
             (
                 lambda h, c, w: _grey(h, c, 2 * w),
@@ -99,10 +147,36 @@ EXERCISES: dict[str, Exercise] = {
                 "The index goes in as (plane, row, col); do not turn it round.",
             ),
             (lambda a, i: a[:3, :3].T @ i + a[:3, 3], "The matrix is transposed: its columns are the steps in mm."),
-            (
-                lambda a, i: (np.linalg.norm(a[:3, :3], axis=0) * i)[::-1] + a[:3, 3],
-                "Spacing alone is not enough: these rows and columns are turned, and only the matrix knows.",
+            *(
+                (lambda a, i, way=way: way(a[:3, :3], i) + a[:3, 3], _SPACINGS)
+                for way in (
+                    lambda m, i: (np.linalg.norm(m, axis=0) * i)[::-1],
+                    lambda m, i: np.linalg.norm(m, axis=0) * i,
+                    lambda m, i: np.linalg.norm(m, axis=1) * i[::-1],
+                    lambda m, i: np.linalg.norm(m, axis=1) * i,
+                    lambda m, i: np.round(np.linalg.norm(m, axis=0), 1) * i,
+                    lambda m, i: np.diag(m) * i,
+                    lambda m, i: np.abs(m).max(axis=0) * i,
+                    lambda m, i: m.sum(axis=0) * i,
+                )
             ),
+            *(
+                (
+                    lambda a, i, way=way: way(a, i),
+                    "The inverse leads back, from mm to the index: use the matrix itself.",
+                )
+                for way in (
+                    lambda a, i: np.linalg.inv(a)[:3, :3] @ i + a[:3, 3],
+                    lambda a, i: np.linalg.inv(a[:3, :3]) @ (i - a[:3, 3]),
+                    lambda a, i: (np.linalg.inv(a) @ np.append(i, 1))[:3],
+                )
+            ),
+            (lambda a, i: (a @ np.append(1, i))[:3], "The 1 stands behind the index, as the origin stands last."),
+            *(
+                (lambda a, i, way=way: way(a, i), "The matrix is transposed: its columns are the steps in mm.")
+                for way in (lambda a, i: (np.append(i, 1) @ a)[:3], lambda a, i: i @ a[:3, :3] + a[3, :3])
+            ),
+            (lambda a, i: a[:3, :3] @ i * a[:3, 3], "The origin is added to the steps, not multiplied by them."),
             (
                 lambda a, i: a @ np.append(i, 1),
                 "Four numbers: the last is the 1 that was added to the index; leave it out.",
@@ -171,6 +245,37 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p, n: np.median(np.linalg.norm(np.diff(p, axis=0), axis=1)),
                 "Files come in any order: sort the heights first.",
+            ),
+            (
+                lambda p, n: np.median(abs(np.diff(np.sort(p, axis=0) @ n))),
+                "This sorts x, y and z each by itself, and takes positions apart: sort the heights.",
+            ),
+            (
+                lambda p, n: np.median(np.linalg.norm(np.diff(p[np.argsort(p @ n)], axis=0), axis=1)),
+                "This is the way from slice to slice, longer where the stack leans: project it on the normal.",
+            ),
+            *(
+                (
+                    lambda p, n, power=power: np.median(np.diff(np.sort(p[:, 2]))) * n[2] ** power,
+                    "z is not the height of a tilted slice: project the positions on the normal.",
+                )
+                for power in (1, -1)
+            ),
+            (
+                lambda p, n: _step(p, n) / n[2],
+                "The heights are along the normal already: nothing is to be divided by its z.",
+            ),
+            (
+                lambda p, n: np.median(np.diff(np.sort(abs(p @ n)))),
+                "A height has a sign: without it slices above and below 0 fall on each other.",
+            ),
+            (lambda p, n: np.mean(p @ n), "This is the mean height; wanted are the differences between neighbours."),
+            *(
+                (
+                    lambda p, n, axis=axis: np.median(np.diff(np.sort(p * n, axis=axis))),
+                    "`*` multiplies number by number; one height for each slice comes from positions @ normal.",
+                )
+                for axis in (0, -1)
             ),
         ),
         hints=(

@@ -14,7 +14,7 @@ _PX = 0.45  # mm: 512 pixels over a head
 
 
 def _pressures():
-    return [(0.062, 21), (0.062, 41), (0.02, 31)]
+    return [(0.062, 21), (0.062, 41), (0.0213, 31)]
 
 
 @cache
@@ -36,12 +36,12 @@ def _tangents():
     return [(length, theta0 + turn, theta1 + turn, n) for (length, theta0, theta1), turn, n in turned]
 
 
-def _mm_off(curve, wanted):
-    """Largest distance in mm between two curves of n snaxels each, snaxel by snaxel."""
+def _px_off(curve, wanted):
+    """Largest distance in px between two curves of n snaxels each, snaxel by snaxel."""
     nodes = np.asarray(curve, float)
     if nodes.shape != wanted.shape:
         return float("inf")
-    return _PX * float(np.linalg.norm(nodes - wanted, axis=1).max())
+    return float(np.linalg.norm(nodes - wanted, axis=1).max())
 
 
 def _tangent_pressure(length, theta0, theta1, n):
@@ -94,6 +94,20 @@ EXERCISES: dict[str, Exercise] = {
                 "This is in mm of the paper's pixel; the height is wanted in px.",
             ),
             (lambda k, n: k * (n - 2) ** 2 / 8, "N counts the steps between snaxels: N = n - 1."),
+            (lambda k, n: k * (n / 2) * (n / 2 - 1) / 2, "N counts the steps between snaxels: N = n - 1."),
+            (lambda k, n: k * (n - 1) // 2 * (n - (n - 1) // 2) / 2, "The parabola is i (N - i), with N = n - 1."),
+            (lambda k, n: k * ((n - 1) // 2) * (n - (n - 1) // 2) / 2, "The parabola is i (N - i), with N = n - 1."),
+            *(
+                (
+                    lambda k, n, d=d: round(k * (n - 1) ** 2 / 8, d),
+                    "The number was rounded, or cut by `//`: return it whole.",
+                )
+                for d in (0, 1, 2, 3)
+            ),
+            (
+                lambda k, n: k * (n - 1) ** 2 / 8 - k * (n - 1) / np.sqrt(5),
+                "Here the clamps are in it: the apex away from the ends is asked for, that of the parabola.",
+            ),
         ),
         hints=("At rest c'' = -k, with the end heights 0.", "c(i) = k i (N - i) / 2.", "Put i = N / 2, and N = n - 1."),
         praise="the apex does not know the width of the gap.",
@@ -148,6 +162,50 @@ EXERCISES: dict[str, Exercise] = {
                 "The difference of the two slopes is wanted, not the slope of the difference.",
             ),
             (lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / n, "N is squared, and counts the steps: N = n - 1."),
+            *(
+                (
+                    lambda L, a, b, n, at=at: L * (np.tan(a) - np.tan(b)) / (n + at) ** 2,
+                    "N counts the steps between snaxels: N = n - 1.",
+                )
+                for at in (1, -2)
+            ),
+            (lambda L, a, b, n: L * (np.sin(a) + np.sin(b)) / (n - 1) ** 2, "A slope is a tangent, not a sine."),
+            (lambda L, a, b, n: L * (np.cos(a) - np.cos(b)) / (n - 1) ** 2, "A slope is a tangent, not a cosine."),
+            (
+                lambda L, a, b, n: L * abs(np.tan(a) + np.tan(b)) / (n - 1) ** 2,
+                "tan theta1 is negative: adding it takes away what it should give.",
+            ),
+            (
+                lambda L, a, b, n: L * (np.tan(np.degrees(a)) - np.tan(np.degrees(b))) / (n - 1) ** 2,
+                "The angles are in radians already, and np.tan takes them so.",
+            ),
+            *(
+                (
+                    lambda L, a, b, n, sign=sign: sign * L * (a - b) / (n - 1),
+                    "These are angles, and the slope is the tangent of an angle; and N is squared.",
+                )
+                for sign in (1, -1)
+            ),
+            (
+                lambda L, a, b, n: 2 * L * np.tan((a + np.pi - b) / 2) / (n - 1) ** 2,
+                "The mean of the slopes is wanted, not the slope of the mean angle.",
+            ),
+            (
+                lambda L, a, b, n: -2 * L * np.tan(b) / (n - 1) ** 2,
+                "The second end is taken for both: the gap need not be symmetric.",
+            ),
+            (
+                lambda L, a, b, n: (n - 1) ** 2 / (L * (np.tan(a) - np.tan(b))),
+                "Upside down: this is 1 / k.",
+            ),
+            (
+                lambda L, a, b, n: (np.tan(a) - np.tan(b)) * (n - 1) ** 2 / L,
+                "Upside down: times the length of a step, L / N, and divided by N.",
+            ),
+            (
+                lambda L, a, b, n: L / (n - 1) ** 2 * np.tan(a) - np.tan(b),
+                "Products go before differences: put the difference of the slopes in brackets.",
+            ),
         ),
         hints=(
             "The slope changes from tan theta0 to tan theta1 over N steps.",
@@ -161,9 +219,9 @@ EXERCISES: dict[str, Exercise] = {
         right=_at_rest,
         answer=Answer(
             "an array (n, 2) of (along, out) from one end of the gap to the other",
-            unit="mm",
-            tolerance=0.1,
-            error=_mm_off,
+            unit="px",
+            tolerance=0.2,
+            error=_px_off,
             shows=(np.asarray, "px"),
         ),
         mistakes=(
@@ -232,6 +290,57 @@ EXERCISES: dict[str, Exercise] = {
                     L, a, b, n, L * np.array([[np.cos(t), np.sin(t)] for t in (a, b)]) / (n - 1)
                 ),
                 "The slopes go with the chord: L / N along and L tan(theta) / N out, not cosine and sine.",
+            ),
+            *(
+                (
+                    lambda L, a, b, n, size=size: _with_slopes(
+                        L, a, b, n, size(L, n) * np.array([[np.cos(t), np.sin(t)] for t in (a, b)])
+                    ),
+                    "These are tangents of one length: a slope goes L / N along and L tan(theta) / N out.",
+                )
+                for size in (lambda L, n: 1.0, lambda L, n: L)
+            ),
+            *(
+                (
+                    lambda L, a, b, n, signs=signs: _with_slopes(
+                        L, a, b, n, L * np.array([[1, s * np.tan(a)] for s in signs]) / (n - 1)
+                    ),
+                    "The first end is taken for both: the second slope is tan theta1, negative already.",
+                )
+                for signs in ((1, -1), (1, 1), (-1, 1))
+            ),
+            (
+                lambda L, a, b, n: _with_slopes(L, a, b, n, L * np.array([[1, -np.tan(t)] for t in (a, b)]) / (n - 1)),
+                "The slopes have the wrong sign: out of the head is positive.",
+            ),
+            *(
+                (
+                    lambda L, a, b, n, slope=slope: _with_slopes(
+                        L, a, b, n, L * np.array([[1, slope(t)] for t in (a, b)]) / (n - 1)
+                    ),
+                    "The slope out is the tangent of the angle: L tan(theta) / N.",
+                )
+                for slope in (np.sin, float)
+            ),
+            (
+                lambda L, a, b, n: _relaxed(L, a, b, n, L * (np.tan(a) - np.tan(b)) / (n - 2) ** 2),
+                "Blown too hard: tangent_pressure wants n, the number of snaxels, and takes n - 1 itself.",
+            ),
+            (lambda L, a, b, n: _at_rest(L, a, b, n)[:, ::-1], "Along and out are exchanged: columns (along, out)."),
+            (lambda L, a, b, n: _at_rest(L, a, b, n)[:, 1], "These are the heights alone: return (along, out)."),
+            *(
+                (
+                    lambda L, a, b, n, stop=stop: (
+                        inflate(
+                            cubic(L, a, b, n),
+                            L * np.array([[1, np.tan(t)] for t in (a, b)]) / (n - 1),
+                            pressure=_tangent_pressure(L, a, b, n),
+                            **stop,
+                        ).curve
+                    ),
+                    "Not yet at rest: leave max_iter and tol as they are.",
+                )
+                for stop in ({"max_iter": 10}, {"tol": 1.0}, {"tol": 0.1})
             ),
             (lambda L, a, b, n: _at_rest(L, a, b, n + 1), "There is a snaxel too many: n of them have n - 1 steps."),
             (lambda L, a, b, n: _relaxed(L, a, b, n, 2 * _tangent_pressure(L, a, b, n)), "Blown twice too hard."),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 from scipy import ndimage
 
@@ -30,10 +32,21 @@ def _without_frame(bone):
     return edge
 
 
+def _with_neighbours(bone, join, *sides):
+    """Bone whose neighbours at some sides, (axis, step), are not all bone, or not any."""
+    framed = np.pad(bone, 1)
+    return bone & ~join([np.roll(framed, step, axis)[1:-1, 1:-1] for axis, step in sides])
+
+
+_SIDES = ((0, 1), (0, -1), (1, 1), (1, -1))
+
+
 def _clouds():
     t = np.linspace(-10.0, 10.0, 41)
     wave = 1.2 * np.cos(9 * t)  # so wide that a fit along one axis leans, even along the better one
-    wave[[0, -1]] = [2.0, -2.0]  # the line from the first point to the last is not the nearest to all
+    # neither the line from first point to last is the nearest to all, nor one that joins the means of two parts
+    wave[[0, -1]] = [2.0, -2.0]
+    wave[[10, 12, 13]], wave[[27, 28, 30]] = -2.0, 2.0
     clouds = []
     for angle in (0.0, 90.0, 145.0):
         c, s = np.cos(np.radians(angle)), np.sin(np.radians(angle))
@@ -94,6 +107,26 @@ EXERCISES: dict[str, Exercise] = {
                 lambda b: b & ~ndimage.binary_erosion(b, np.ones((3, 3))),
                 "Use the cross of 4 neighbours; the square of 8 also takes pixels that touch by a corner.",
             ),
+            (
+                lambda b: _with_neighbours(b, np.logical_or.reduce, *_SIDES),
+                "These have no neighbour of bone at all: one neighbour that is not bone is enough, join them by `&`.",
+            ),
+            *(
+                (
+                    lambda b, sides=sides: _with_neighbours(b, np.logical_and.reduce, *sides),
+                    "Neighbours are left out: look at all four, above, below, left and right.",
+                )
+                for sides in (*combinations(_SIDES, 2), *combinations(_SIDES, 3), *combinations(_SIDES, 1))
+            ),
+            (
+                lambda b: b & ~ndimage.binary_erosion(b, np.ones((3, 3)), border_value=1),
+                "Use the cross of 4 neighbours, not the square of 8; and what lies outside the image is no bone.",
+            ),
+            (
+                lambda b: b & ~ndimage.binary_opening(b),
+                "Opening erodes and grows again, so hardly a pixel is lost: erode only.",
+            ),
+            (lambda b: ndimage.binary_closing(b) & ~b, "Closing fills bays, outside the bone: erode it instead."),
             (lambda b: ~ndimage.binary_erosion(b), "All the background is in it: keep what is bone and not inside."),
             (
                 lambda b: b ^ ndimage.binary_erosion(b) | ~b,
@@ -157,6 +190,28 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p: p[-1] - p[0],
                 "From the first point to the last: the noise of these two turns the line. Fit all points.",
+            ),
+            *(
+                (
+                    lambda p, at=at: np.linalg.svd(p - p[at])[2][0],
+                    "One point was taken for the centre, and it may be off: subtract the mean of all.",
+                )
+                for at in (0, -1)
+            ),
+            *(
+                (
+                    lambda p, parts=parts: p[-(len(p) // parts) :].mean(axis=0) - p[: len(p) // parts].mean(axis=0),
+                    "Two means joined: that rests on where the noise falls in each part. Fit all points at once.",
+                )
+                for parts in (2, 3, 4)
+            ),
+            (
+                lambda p: p[len(p) // 2 :].mean(axis=0) - p[0],
+                "One end is a single point, and it may be off: fit all points at once.",
+            ),
+            (
+                lambda p: np.linalg.svd((p - p.mean(axis=0)) / p.std(axis=0))[2][0],
+                "Divided by the spread of rows and of columns the cloud has another shape: subtract the mean only.",
             ),
             (
                 _by_better_slope,
@@ -236,6 +291,32 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p: np.append(_arc_length(p)[1:], _arc_length(p)[-1]),
                 "The 0 belongs in front, for the first point; the last length is there once.",
+            ),
+            (lambda p: np.append(_arc_length(p)[1:], 0.0), "The 0 stands in front, for the first point."),
+            (lambda p: np.append(_arc_length(p)[:-1], 0.0), "The last length is lost: one 0 is wanted, in front."),
+            (
+                lambda p: np.append(1.0, _arc_length(p)[1:]),
+                "The first point lies at length 0: put a 0 in front.",
+            ),
+            (
+                lambda p: np.cumsum(np.linalg.norm(np.diff(p, axis=0, prepend=0.0), axis=1)),
+                "prepend=0 counts the way from 0, 0 to the first point as a step: put the 0 before the lengths.",
+            ),
+            (
+                lambda p: np.append(0.0, np.cumsum(np.diff(p, axis=0).sum(axis=1))),
+                "This adds rows and columns with their signs; a step is the root of the sum of squares.",
+            ),
+            (
+                lambda p: np.cumsum(np.linalg.norm(np.gradient(p, axis=0), axis=1)),
+                "np.gradient takes means of two steps; np.diff gives the steps.",
+            ),
+            *(
+                (way, "Which axis? Points stand below each other: np.diff along axis=0, the norm along axis=1.")
+                for way in (
+                    lambda p: np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p), axis=1))),
+                    lambda p: np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=0))),
+                    lambda p: np.append(0.0, np.cumsum(np.linalg.norm(np.diff(p, axis=0)))),
+                )
             ),
             (
                 lambda p: _arc_length(p) / _arc_length(p)[-1],

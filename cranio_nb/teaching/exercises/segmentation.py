@@ -35,6 +35,11 @@ def _largest_of_slices_with_bone(mask):
     return _largest_of_slices(mask) & mask
 
 
+def _largest_but_last(mask):
+    labels, n = ndimage.label(mask)
+    return labels == np.bincount(labels.ravel())[1:n].argmax() + 1
+
+
 def _second_largest(mask):
     labels, _ = ndimage.label(mask)
     return labels == np.bincount(labels.ravel())[1:].argsort()[-2] + 1
@@ -48,7 +53,9 @@ def _parts():
     early[0:1, 1:5, 1:5] = True
     blocks = np.zeros((6, 20, 20), bool)
     blocks[1:5, 2:8, 2:8] = blocks[1:5, 8:12, 8:12] = True  # they share an edge only
-    blocks[5, 15:18, 15:18] = True  # alone in its slice
+    blocks[2:4, 4:6, 4:6] = False  # a cavity in the largest: it stays empty
+    blocks[0, 0:2, 15:18] = True  # met first, alone in its slice
+    blocks[5, 15:18, 15:18] = True  # met last, alone in its slice
     return [(couch,), (early,), (blocks,)]
 
 
@@ -61,19 +68,40 @@ _FOUR = (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1])  # first, last row; fir
 _SOME = ((0, 1), (2, 3), (0, 2), (1, 2, 3), (0, 2, 3), (0, 1, 3), (0, 1, 2))  # borders that students look at
 
 
-def _holes(mask, max_pixels, *, borders=(0, 1, 2, 3), structure=None, shift=0):
-    """Parts of the background of at most max_pixels that touch none of the borders; `shift` mixes up their sizes."""
+def _holes(mask, max_pixels, *, borders=(0, 1, 2, 3), structure=None, shift=0, small=np.less_equal, lost=()):
+    """Parts of the background of at most max_pixels that touch none of the borders.
+
+    `shift` mixes up their sizes, `small` compares these, `lost` are numbers of parts that are passed over.
+    """
     labels, n = ndimage.label(~mask, structure)
     sizes = np.bincount(labels.ravel(), minlength=n + 1)
-    small = np.roll(sizes, -shift) <= max_pixels
+    taken = small(np.roll(sizes, -shift), max_pixels)
     for border in borders:
-        small[labels[_FOUR[border]]] = False
-    small[0] = False
-    return small[labels]
+        taken[labels[_FOUR[border]]] = False
+    taken[[0, *lost]] = False
+    return taken[labels]
 
 
 def _fill_small(mask, max_pixels, **how):
     return mask | _holes(mask, max_pixels, **how)
+
+
+def _border_or_small(mask, max_pixels, *, way):
+    """Holes taken by their size and whether they touch a border, put together the wrong way."""
+    labels, n = ndimage.label(~mask)
+    small = np.bincount(labels.ravel(), minlength=n + 1) <= max_pixels
+    at_border = np.isin(np.arange(n + 1), np.concatenate([labels[border] for border in _FOUR]))
+    taken = way(small, at_border)
+    taken[0] = False
+    return mask | taken[labels]
+
+
+def _small_of_filled(mask, max_pixels):
+    """The holes that a filling finds, counted with all that is no hole."""
+    labels, _ = ndimage.label(ndimage.binary_fill_holes(mask) & ~mask)
+    sizes = np.bincount(labels.ravel())
+    sizes[0] = 0
+    return mask | (sizes <= max_pixels)[labels]
 
 
 def _large_holes(mask, max_pixels):
@@ -88,6 +116,8 @@ def _rings():
     ring = (np.hypot(row, col) < 30) & (np.hypot(row, col) > 22)
     spotted, corners, pockets = ring.copy(), ring.copy(), ring.copy()
     spotted[14, 38:42] = spotted[40, 64:67] = False
+    corners[:4] = True  # bone along a border, with a hole of 4 pixels that is met before all else
+    corners[1:3, 5:7] = False
     corners[12:16, 38:43] = False  # 20 pixels
     corners[34:40, 64:66] = corners[40:46, 66:68] = False  # 12 each, and they share a corner only
     pockets[14, 38:42] = False
@@ -112,6 +142,14 @@ EXERCISES: dict[str, Exercise] = {
                 lambda m: ndimage.label(m)[0] == np.bincount(ndimage.label(m)[0].ravel()).argmax(),
                 "This is the background, label 0: leave it out of the count.",
             ),
+            (_largest_but_last, "The last part was not counted: the numbers of the parts run to n, range(1, n + 1)."),
+            (
+                lambda m: ndimage.binary_fill_holes(_largest(m)),
+                "The largest part, and its cavities with it: filling was not asked for.",
+            ),
+            (ndimage.binary_fill_holes, "This fills cavities and drops nothing: label the parts and choose one."),
+            (lambda m: _largest(~m), "You labelled ~mask, the background: label the mask itself."),
+            (lambda m: m & ~_largest(m), "This drops the largest part and keeps the rest."),
             (_largest_shifted, "bincount(...)[1:] begins with part 1: add 1 to its argmax."),
             *(
                 (way, "This takes the largest part of each slice: label the whole mask once.")
@@ -156,7 +194,37 @@ EXERCISES: dict[str, Exercise] = {
         answer=Answer("a bool mask like the one given", unit="pixels", tolerance=0.0, error=_bool_pixels),
         mistakes=(
             (lambda m, a: ndimage.binary_fill_holes(m), "This fills the brain's place as well: fill only small holes."),
-            (lambda m, a: m, "No hole was filled."),
+            (lambda m, a: m, "No hole was filled: holes are parts of ~mask. Was `mask` labelled, the bone?"),
+            *(
+                (
+                    partial(_fill_small, lost=(-1,), small=small),
+                    "The last hole is missing: the numbers of the parts run to n, range(1, n + 1).",
+                )
+                for small in (np.less_equal, np.less)
+            ),
+            (
+                partial(_fill_small, lost=(1,)),
+                "Part 1 is passed over: only 0 is no part, and part 1 need not be what lies outside.",
+            ),
+            *(
+                (
+                    partial(_fill_small, small=small),
+                    "Turned round: this fills the large holes. At most max_pixels means <= max_pixels.",
+                )
+                for small in (np.greater_equal, np.greater)
+            ),
+            (
+                partial(_border_or_small, way=lambda small, at_border: small | ~at_border),
+                "A hole is small *and* away from the border: join both by `and`, not by `or`.",
+            ),
+            (
+                partial(_border_or_small, way=lambda small, at_border: small & at_border),
+                "Turned round: this fills what touches the border, and leaves the holes.",
+            ),
+            (
+                _small_of_filled,
+                "Label 0, all that is no hole, was made small by s[0] = 0: leave it out of what is filled.",
+            ),
             (
                 partial(_fill_small, borders=()),
                 "What touches the border is outside, not a hole, however small it is.",

@@ -50,6 +50,15 @@ EXERCISES: dict[str, Exercise] = {
             ),
             *(
                 (
+                    lambda m, s, digits=digits: round(m.sum() * np.prod(s) / 1000, digits),
+                    "The number was rounded: a hundredth of a cm3 counts here.",
+                )
+                for digits in (0, 1)
+            ),
+            (lambda m, s: m.sum() * s[0] / 1000, "The distance between slices alone: rows and columns are left out."),
+            (lambda m, s: m.mean() * np.prod(s) / 1000, "mean is a share of the box; mask.sum() counts the voxels."),
+            *(
+                (
                     lambda m, s, two=two: m.sum() * np.prod(np.take(s, two)) / 1000,
                     "One of the three spacings is left out.",
                 )
@@ -76,6 +85,41 @@ EXERCISES: dict[str, Exercise] = {
             (lambda a, b: (a & b).sum() / (a.sum() + b.sum()), "The factor 2 is missing: two equal masks must give 1."),
             (lambda a, b: (a & b).sum() / b.sum(), "This is the part of b that is found; Dice divides by both sizes."),
             (lambda a, b: (a == b).mean(), "This counts the air as agreement; use only voxels of the masks."),
+            *(
+                (
+                    lambda a, b, n=n, sizes=sizes: n * (a == b).sum() / sizes(a, b),
+                    "a == b is true in the air as well, where both are False: what is shared is a & b.",
+                )
+                for n in (1, 2)
+                for sizes in (lambda a, b: a.sum() + b.sum(), lambda a, b: (a | b).sum(), lambda a, b: 1)
+            ),
+            *(
+                (
+                    lambda a, b, size=size: (a & b).sum() / size(a.sum(), b.sum()),
+                    "This divides by one size, or a mean of both that is not theirs: Dice takes their sum.",
+                )
+                for size in (max, min, lambda m, n: np.sqrt(float(m) * n))
+            ),
+            (lambda a, b: 2 * (a & b).sum() / (a.sum() * b.sum()), "The sizes are added, not multiplied."),
+            (
+                lambda a, b: 2 * (a & b).sum() / a.sum() + b.sum(),
+                "`/` goes before `+`: put the sum of the sizes in brackets.",
+            ),
+            (
+                lambda a, b: 2 * (a & b).sum() // (a.sum() + b.sum()),
+                "`//` cuts to a whole number: divide by `/`.",
+            ),
+            (
+                lambda a, b: round(2 * (a & b).sum() / (a.sum() + b.sum()), 2),
+                "The number was rounded: return it as it is.",
+            ),
+            *(
+                (
+                    lambda a, b, shared=shared: 2 * shared(a & b) / (len(a) + len(b)),
+                    "len counts the planes of the box; a.sum() counts the voxels of the mask.",
+                )
+                for shared in (np.sum, len)
+            ),
             (lambda a, b: (a & b).sum() / a.sum(), "This is the part of a that b shares; Dice divides by both sizes."),
             (
                 lambda a, b: (a & b).sum(),

@@ -53,7 +53,7 @@ def _view(ct: Volume, window: Window, plane: int, centre: float, width: float) -
     annotate_slice(canvas, window, ct, plane)
     # its histogram, with the window's ends dashed and its centre
     x, _, width, _ = RIGHT
-    chart = hu_chart(canvas, (x, 20, width, 330), count_hu(hu))
+    chart = hu_chart(canvas, (x, 20, width, 330), count_hu(hu), "voxels of this slice")
     for value in (low, high):
         chart.upright(canvas, value, VERMILLION, dash=(5, 3))
     chart.upright(canvas, centre, VERMILLION)

@@ -238,7 +238,7 @@ def _annotate_gap(inset: Canvas, scene: Scene, step: int) -> None:
     unit = 1.0 if scene.px is None else scene.px
     bar = round_length(0.2 * WIDTH / scene.zoom * unit)
     inset.scale_bar(14, _HIGH - 14, bar / unit * scene.zoom, f"{bar:g} {'px' if scene.px is None else 'mm'}")
-    truth = [] if scene.truth is None else [(_GHOST, "line", "true bone")]
+    truth = [] if scene.truth is None else [(_GHOST, "line", "edge of true bone")]
     # below the chord, where the head is hollow
     inset.legend(150, _HIGH - 66, [(_START, "dash", "start"), (_BALLOON, "line", f"balloon, step {step}")])
     inset.legend(320, _HIGH - 66, [(TANGENT, "line", "end tangents"), (GREY, "dash", "chord L")])

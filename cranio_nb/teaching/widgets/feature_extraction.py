@@ -178,9 +178,10 @@ def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatur
     # the legend lies in the cavity, where nothing is drawn
     outer_name, inner_name = "outer boundary, B \N{MINUS SIGN} S", "inner boundary, B \N{INTERSECTION} S"
     bounds = [(OUTER, "area", outer_name), (INNER, "area", inner_name)]
-    lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S")]
+    lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S"), (BLACK, "dash", "fitted line")]
+    lines.append((WHITE, "dot", "end of the balloon"))
     used = [(TANGENT, "dot", "used for a tangent"), (TANGENT, "line", "tangents")]
-    canvas.legend(LEFT / 2 - 90, HEIGHT / 2 - 57, [*bounds, *lines, *used])
+    canvas.legend(LEFT / 2 - 90, HEIGHT / 2 - 66, [*bounds, *lines, *used])
     return canvas, rgb, found, outside
 
 
@@ -238,7 +239,12 @@ def _draw_ends(canvas: Canvas, window: Window, fits: list[Fit], px: float, size:
             # the fitted line goes through the mean of the used points; the tangent starts at the end, beside it
             middle = points.mean(axis=0)
             along = (points - middle) @ tangent
-            canvas.line(window.px([middle + along.min() * tangent, middle + along.max() * tangent]), BLACK, width=1)
+            canvas.line(
+                window.px([middle + along.min() * tangent, middle + along.max() * tangent]),
+                BLACK,
+                width=1.5,
+                dash=(4, 3),
+            )
             canvas.arrow(window.px(end), window.px(end + 12.0 / px * tangent), TANGENT, width=1.2 + 0.8 * size)
             canvas.dots(window.px(end), WHITE, radius=2.0 + 1.5 * size, edge=BLACK)
 

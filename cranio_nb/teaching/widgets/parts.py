@@ -98,7 +98,7 @@ def count_hu(hu: NDArray, n: int = 120) -> Histogram:
     return edges, counts
 
 
-def hu_chart(canvas: Canvas, box: tuple[float, float, float, float], histogram: Histogram) -> Chart:
+def hu_chart(canvas: Canvas, box: tuple[float, float, float, float], histogram: Histogram, counted: str) -> Chart:
     """Draw a histogram of HU on logarithmic counts.
 
     Parameters
@@ -108,6 +108,8 @@ def hu_chart(canvas: Canvas, box: tuple[float, float, float, float], histogram: 
         x, y, width and height of the chart, px.
     histogram : tuple
         As `count_hu` gives it.
+    counted : str
+        What was counted, for the chart's title.
 
     Returns
     -------
@@ -116,7 +118,7 @@ def hu_chart(canvas: Canvas, box: tuple[float, float, float, float], histogram: 
     """
     edges, counts = histogram
     chart = Chart(box, (edges[0], edges[-1]), (0.8, max(10.0, 1.5 * counts.max())), log=True)
-    chart.frame(canvas, "voxels", "HU")
+    chart.frame(canvas, counted, "HU")
     chart.bars(canvas, edges, np.maximum(counts, 0.8), COUNTS)
     return chart
 

@@ -86,7 +86,7 @@ def _view(
 
 def _draw_threshold(canvas: Canvas, histogram: Histogram, threshold_hu: float) -> None:
     """The histogram of the CT with the threshold."""
-    chart = hu_chart(canvas, (RIGHT[0], 20, RIGHT[2], 330), histogram)
+    chart = hu_chart(canvas, (RIGHT[0], 20, RIGHT[2], 330), histogram, "every 4th voxel of the scan")
     chart.upright(canvas, threshold_hu, BLACK, width=3)
     (x, y), *_ = chart.px([[threshold_hu, chart.y[1]]])
     canvas.text(x + 6, y + 12, "bone", size=12, anchor="ls")

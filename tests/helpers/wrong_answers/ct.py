@@ -1,5 +1,8 @@
 """Wrong answers to the exercises of lesson 01."""
 
+GREY = "g = (hu - (centre - width / 2)) / width * 255"
+STEPS = "s = np.linalg.norm(affine[:3, :3], axis=0)"
+
 # what students write, and words of the hint that they should get
 WRONG = {
     "1.1": [
@@ -21,6 +24,16 @@ WRONG = {
         ("return np.clip((hu - centre + width / 2) * 255, 0, 255)", "Divide by width"),
         ("return np.clip((hu - width / 2) / width, 0, 1) * 255", "The function does not use `centre`"),
         ("return np.clip((hu - centre - width / 2) / width, 0, 1) * 255", "The window starts at centre - width / 2"),
+        (f"{GREY}; g[g > 255] = g[g < 0] = 0; return g", "Above the window is white"),
+        (f"{GREY}; return np.where((g > 0) & (g < 255), g, 255)", "Below the window is black"),
+        (f"{GREY}; return np.where(g < 0, 255, np.where(g > 255, 0, g))", "Below the window is black"),
+        (f"{GREY}; return np.minimum(g, 255)", "Only one end"),
+        (f"{GREY}; return np.maximum(g, 0)", "Only one end"),
+        ("return np.clip((hu - centre + width / 2) / width, 0, 1) * 256", "not by 256"),
+        ("return (np.clip((hu - centre + width / 2) / width, 0, 1) * 256).astype(np.uint8)", "As uint8 256 becomes 0"),
+        ("return np.clip((hu - centre + width / 2) / width, 0, 1) * 254", "0.9961 times the right"),
+        ("return np.clip((hu - centre + width / 2) // width, 0, 1) * 255", "`//` cuts"),
+        ("return np.round(np.clip((hu - centre + width / 2) / width, 0, 1)) * 255", "black and white only"),
     ],
     "1.2": [
         ("return affine[:3, :3].dot(index)", "origin"),
@@ -31,14 +44,24 @@ WRONG = {
         ("return affine[:3,:3] @ index + affine[3,:3]", "The origin is missing"),
         ("return affine[:3,:3] @ (index + affine[:3,3])", "First the steps"),
         ("return affine[:3,:3] * index + affine[:3,3]", "`*` multiplies number by number"),
-        ("return np.linalg.inv(affine)[:3,:3] @ index + affine[:3,3]", None),
+        ("return np.linalg.inv(affine)[:3,:3] @ index + affine[:3,3]", "The inverse leads back"),
+        ("return (np.linalg.inv(affine) @ np.append(index, 1))[:3]", "The inverse leads back"),
+        (f"{STEPS}; return s * index + affine[:3, 3]", "Spacings alone"),
+        (f"{STEPS}; return s[::-1] * index[::-1] + affine[:3, 3]", "Spacings alone"),
+        (f"{STEPS}; return s.round(1) * index + affine[:3, 3]", "Spacings alone"),
+        ("return np.linalg.norm(affine[:3, :3], axis=1) * index + affine[:3, 3]", "Spacings alone"),
+        ("return affine[:3, :3].max(axis=0) * index + affine[:3, 3]", "Spacings alone"),
+        ("return affine[:3, :3].sum(axis=0) * index + affine[:3, 3]", "Spacings alone"),
+        ("return (affine @ np.append(1, index))[:3]", "The 1 stands behind"),
+        ("return (np.append(index, 1) @ affine)[:3]", "transposed"),
+        ("return (affine @ np.append(index, 0))[:3]", "origin is missing"),
         ("return affine[:3, 3]", "This is the place of voxel (0"),
         ("return affine[:3,:3] @ index - affine[:3,3]", "The origin is added"),
         ("return affine[:3,:3] @ (index + 0.5) + affine[:3,3]", "Half a voxel off"),
         ("return index + affine[:3,3]", "These are still voxels"),
         ("return affine @ index", "stopped with ValueError"),
-        ("return affine[:3,:3] @ index * affine[:3,3]", None),
-        ("return np.diag(affine)[:3] * index + affine[:3,3]", None),
+        ("return affine[:3,:3] @ index * affine[:3,3]", "not multiplied"),
+        ("return np.diag(affine)[:3] * index + affine[:3,3]", "Spacings alone"),
     ],
     "1.3": [
         ("z = sorted(positions[:, 2]); return np.median(np.diff(z))", "tilted"),
@@ -59,10 +82,21 @@ WRONG = {
                 "p = positions[np.argsort(positions[:, 2])]; "
                 "return np.median(np.linalg.norm(np.diff(p, axis=0), axis=1))"
             ),
-            "z is not the height of a tilted slice",
+            "the way from slice to slice",
         ),
         ("return np.median(np.diff(positions, axis=0))", "The function does not use `normal`"),
-        ("return np.mean(positions @ normal)", None),
+        ("return np.mean(positions @ normal)", "This is the mean height"),
+        ("return np.median(np.diff(np.sort(positions, axis=0) @ normal))", "each by itself"),
+        (
+            "p = np.sort(positions, axis=0); return np.median(np.linalg.norm(np.diff(p, axis=0), axis=1))",
+            "the way from slice",
+        ),
+        ("return abs(np.median(np.diff(np.sort(positions[:, 2])) * normal[2]))", "z is not the height"),
+        ("return np.median(np.diff(np.sort(positions[:, 2]))) / normal[2]", "z is not the height"),
+        ("return np.median(np.diff(np.sort(positions @ normal))) / normal[2]", "along the normal already"),
+        ("return np.median(np.diff(np.sort(np.abs(positions @ normal))))", "A height has a sign"),
+        ("return np.median(np.diff(np.sort(positions * normal, axis=0)))", "`*` multiplies"),
+        ("return np.median(np.diff(np.sort(positions * normal, axis=0), axis=0))", None),
         ("return np.median(np.diff(np.sort(positions @ normal))) / 2", "0.5 times the right"),
         ("return np.median(np.diff(np.sort(positions[:, 0])))", "The function does not use `normal`"),
     ],

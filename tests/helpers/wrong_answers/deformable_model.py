@@ -9,6 +9,8 @@ REST = (
 
 END = f"{SLOPES} / (n - 1); return deformable_model.inflate(cubic(length, theta0, theta1, n), slopes, pressure=k).curve"
 
+UNIT = "np.array([[np.cos(t), np.sin(t)] for t in (theta0, theta1)])"
+
 # what students write, and words of the hint that they should get
 WRONG = {
     "4.1": [
@@ -28,6 +30,12 @@ WRONG = {
         ("return k * (n - 2) ** 2 / 8", "N counts the steps between snaxels"),
         ("return (k * (n - 1)) ** 2 / 8", "goes with k"),
         ("return k * (n - 1) / 2", "goes with 1 / (n - 1)"),
+        ("return round(k * (n - 1) ** 2 / 8, 2)", "The number was rounded"),
+        ("return k * (n - 1) ** 2 // 8", "cut by `//`"),
+        ("i = (n - 1) // 2; return k * i * (n - i) / 2", "The parabola is i (N - i)"),
+        ("i = n / 2; return k * i * (n - 1 - i) / 2", "N counts the steps"),
+        ("return k * (n - 1) ** 2 / 8 + 2 / np.sqrt(5) * (0 - k * (n - 1) / 2)", "clamps are in it"),
+        ("return [k / 2 * i * (n - 1 - i) for i in range(n)]", "these are many"),
     ],
     "4.2": [
         ("return length * (np.tan(theta0) - np.tan(theta1)) / n ** 2", "N = n - 1"),
@@ -47,9 +55,20 @@ WRONG = {
         ("return (np.tan(theta0) - np.tan(theta1)) / length", "does not use `n`"),
         ("return 2 * length * np.tan(theta0) / (n-1)**2", "The first end is taken for both"),
         ("return 8 * length * (np.tan(theta0) - np.tan(theta1)) / (n-1)**2", "8 times the right"),
-        ("return length * (theta1 - theta0) / (n - 1)", None),
+        ("return length * (theta1 - theta0) / (n - 1)", "These are angles, and"),
+        ("return length * (np.tan(theta0) - np.tan(theta1)) / (n + 1) ** 2", "N counts the steps"),
+        ("return length * (np.tan(theta0) - np.tan(theta1)) / (n - 2) ** 2", "N counts the steps"),
+        ("return length * (np.sin(theta0) + np.sin(theta1)) / (n - 1) ** 2", "not a sine"),
+        ("return length * (np.sin(theta0) + np.sin(np.pi - theta1)) / (n - 1) ** 2", "not a sine"),
+        ("return length * (np.cos(theta0) - np.cos(theta1)) / (n - 1) ** 2", "not a cosine"),
+        ("d = np.degrees; return length * (np.tan(d(theta0)) - np.tan(d(theta1))) / (n - 1) ** 2", "radians already"),
+        ("return length * abs(np.tan(theta0) + np.tan(theta1)) / (n - 1) ** 2", "negative"),
+        ("return 2 * length * np.tan((theta0 + np.pi - theta1) / 2) / (n - 1) ** 2", "slope of the mean angle"),
+        ("return -2 * length * np.tan(theta1) / (n - 1) ** 2", "second end is taken for both"),
+        ("return length / (n - 1) ** 2 * np.tan(theta0) - np.tan(theta1)", "in brackets"),
+        ("return (np.tan(theta0) - np.tan(theta1)) * (n - 1) ** 2 / length", "Upside down"),
         ("return length * np.tan(theta0 - theta1) / (n - 1)**2", "The difference of the two slopes is wanted"),
-        ("return (n - 1)**2 / (length * (np.tan(theta0) - np.tan(theta1)))", None),
+        ("return (n - 1)**2 / (length * (np.tan(theta0) - np.tan(theta1)))", "Upside down"),
         ("return length * (np.tan(theta0) - np.tan(theta1)) / n", "N is squared"),
     ],
     "4.3": [
@@ -74,7 +93,18 @@ WRONG = {
         ),
         (f"n = n + 1; {SLOPES} / (n - 1); {REST}", "snaxel too many"),
         (f"k = 2 * deformable_model.tangent_pressure(length, theta0, theta1, n); {END}", "too hard"),
-        (f"{SLOPES} / (n - 1); {REST.removesuffix('.curve')}", None),
+        (f"{SLOPES} / (n - 1); {REST.removesuffix('.curve')}", "Balloon, which holds more"),
+        (f"slopes = {UNIT}; {REST}", "tangents of one length"),
+        (f"slopes = length * {UNIT}; {REST}", "tangents of one length"),
+        (f"slopes = length * np.array([[1, np.tan(theta0)], [1, -np.tan(theta0)]]) / (n - 1); {REST}", "for both"),
+        (f"slopes = length * np.array([[1, np.tan(theta0)], [1, np.tan(theta0)]]) / (n - 1); {REST}", "for both"),
+        (f"slopes = length * np.array([[1, -np.tan(t)] for t in (theta0, theta1)]) / (n - 1); {REST}", "wrong sign"),
+        (f"slopes = length * np.array([[1, np.sin(t)] for t in (theta0, theta1)]) / (n - 1); {REST}", "tangent of"),
+        (f"slopes = length * np.array([[1, t] for t in (theta0, theta1)]) / (n - 1); {REST}", "tangent of"),
+        (f"k = deformable_model.tangent_pressure(length, theta0, theta1, n - 1); {END}", "Blown too hard"),
+        (f"{SLOPES} / (n - 1); {REST}[:, ::-1]", "Along and out are exchanged"),
+        (f"{SLOPES} / (n - 1); {REST}[:, 1]", "heights alone"),
+        (f"{SLOPES} / (n - 1); {REST.replace('=k)', '=k, max_iter=10)')}", "Not yet at rest"),
         (
             "x = np.linspace(0, length, n); return np.column_stack([x, 4 * x * (length - x) / length**2])",
             "does not use",

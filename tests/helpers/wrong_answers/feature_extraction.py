@@ -1,5 +1,9 @@
 """Wrong answers to the exercises of lesson 03."""
 
+ROUND = "p = np.pad(bone, 1); a, b, c, d = p[:-2, 1:-1], p[2:, 1:-1], p[1:-1, :-2], p[1:-1, 2:]"
+STEPS = "s = np.linalg.norm(np.diff(points, axis=0), axis=1)"
+PARTS = "h = len(points)"
+
 # what students write, and words of the hint that they should get
 WRONG = {
     "3.1": [
@@ -30,7 +34,15 @@ WRONG = {
             "The outermost rows and columns are left out",
         ),
         ("return bone - ndimage.binary_erosion(bone)", "stopped with TypeError"),
-        ("return bone & ~ndimage.binary_opening(bone)", None),
+        ("return bone & ~ndimage.binary_opening(bone)", "grows again"),
+        (f"{ROUND}; return bone & ~(a | b | c | d)", "one neighbour that is not bone is enough"),
+        (f"{ROUND}; return bone & ~(a & b)", "Neighbours are left out"),
+        (f"{ROUND}; return bone & ~(c & d)", "Neighbours are left out"),
+        (f"{ROUND}; return bone & ~(a & c)", "Neighbours are left out"),
+        (f"{ROUND}; return bone & ~(a & b & c)", "Neighbours are left out"),
+        (f"{ROUND}; return ~bone & (a | b | c | d)", "outside the bone"),
+        ("return bone & (ndimage.uniform_filter(bone.astype(float), 3) < 0.99)", "cross of 4"),
+        ("return ndimage.binary_closing(bone) & ~bone", "Closing fills bays"),
         ("return ndimage.sobel(bone.astype(float)) != 0", None),
         ("return bone & ndimage.binary_dilation(~bone)", "At the edge of the image there is boundary"),
     ],
@@ -70,7 +82,16 @@ WRONG = {
             "d = points - points.mean(axis=0); return d[np.linalg.norm(d, axis=1).argmax()]",
             "From the first point to the last",
         ),
-        ("d = points[len(points)//2:].mean(0) - points[0]; return d", None),
+        ("d = points[len(points)//2:].mean(0) - points[0]; return d", "One end is a single point"),
+        (f"{PARTS} // 2; return points[h:].mean(axis=0) - points[:h].mean(axis=0)", "Two means joined"),
+        (f"{PARTS} // 2; return points[-h:].mean(axis=0) - points[:h].mean(axis=0)", "Two means joined"),
+        (f"{PARTS} // 3; return points[-h:].mean(axis=0) - points[:h].mean(axis=0)", "Two means joined"),
+        ("return np.linalg.svd(points - points[0])[2][0]", "One point was taken for the centre"),
+        ("return np.linalg.svd(points - points[-1])[2][0]", "One point was taken for the centre"),
+        (
+            "d = points - points.mean(axis=0); return np.linalg.svd(d / points.std(axis=0))[2][0]",
+            "another shape",
+        ),
         ("return np.linalg.eig(points.T @ points)[1][:, 0]", None),
     ],
     "3.3": [
@@ -89,8 +110,18 @@ WRONG = {
             "The 0 belongs in front",
         ),
         ("return np.cumsum(np.linalg.norm(points, axis=1))", "These are distances from 0"),
-        ("return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points), axis=1))])", None),
-        ("return np.concatenate([[1.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])", None),
+        ("return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points), axis=1))])", "Which axis"),
+        ("return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=0)))", "Which axis"),
+        ("return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0))))", "Which axis"),
+        (f"{STEPS}; return np.concatenate([[1.0], np.cumsum(s)])", "lies at length 0"),
+        (f"{STEPS}; return np.append(np.cumsum(s), 0)", "The 0 stands in front"),
+        (f"{STEPS}; return np.concatenate([[0], np.cumsum(s)[:-1], [0]])", "The last length is lost"),
+        (
+            "return np.cumsum(np.linalg.norm(np.diff(points, axis=0, prepend=0), axis=1))",
+            "as a step",
+        ),
+        ("return np.append(0, np.cumsum(np.diff(points, axis=0).sum(axis=1)))", "with their signs"),
+        ("return np.cumsum(np.linalg.norm(np.gradient(points, axis=0), axis=1))", "np.gradient takes"),
         (
             (
                 "s = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))]); "

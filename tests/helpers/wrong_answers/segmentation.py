@@ -1,6 +1,19 @@
 """Wrong answers to the exercises of lesson 02."""
 
+LABELS = "l, n = ndimage.label(mask); s = np.bincount(l.ravel()); s[0] = 0"
+
 FRAME = ("l[0]", "l[-1]", "l[:, 0]", "l[:, -1]")
+
+
+def loop(numbers, when, *, labelled="~mask"):
+    """Small holes filled in a loop over the numbers of the parts, at the border or not."""
+    return (
+        f"l, n = ndimage.label({labelled}); out = mask.copy(); at = {{*l[0], *l[-1], *l[:, 0], *l[:, -1]}}\n"
+        f"    for i in {numbers}:\n"
+        f"        size = (l == i).sum()\n"
+        f"        if {when}: out[l == i] = True\n"
+        "    return out"
+    )
 
 
 def holes(*borders, structure="None", compare="<=", sizes="s", given="mask"):
@@ -53,7 +66,7 @@ WRONG = {
             ),
             "This is the second largest part",
         ),
-        ("return ndimage.binary_fill_holes(mask)", "Nothing was dropped"),
+        ("return ndimage.binary_fill_holes(mask)", "fills cavities and drops nothing"),
         ("labels, n = ndimage.label(mask); return np.where(labels == 1, 1, 0)", None),
         (
             (
@@ -64,17 +77,46 @@ WRONG = {
         ),
         (
             ("l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); s[0] = 0; return l == s.argmax()"),
-            "This is the background",
+            "You labelled ~mask",
         ),
         (
             "l, n = ndimage.label(mask); s = ndimage.sum(mask, l, range(n)); return l == np.argmax(s)",
-            "Label 1 is the part that is met first",
+            "The last part was not counted",
         ),
         ("return ndimage.label(mask)[0] == 2", "All that is too much lies in `mask`"),
+        (
+            "l, n = ndimage.label(mask); s = [(l == i).sum() for i in range(1, n)]; return l == np.argmax(s) + 1",
+            "The last part was not counted",
+        ),
+        (f"{LABELS}; return mask & (l != s.argmax())", "drops the largest part"),
+        (f"{LABELS}; return ndimage.binary_fill_holes(l == s.argmax())", "filling was not asked for"),
+        (f"{LABELS}; return s == s.argmax()", None),
+        (
+            "l, n = ndimage.label(mask); s = ndimage.sum(mask, l, range(1, n + 1)); return l == s.argmax()",
+            "add 1",
+        ),
     ],
     "2.2": [
         ("return ndimage.binary_fill_holes(mask)", "brain"),
         ("return mask.copy()", "No hole"),
+        (loop("range(1, n)", "i not in at and size <= max_pixels"), "The last hole is missing"),
+        (loop("range(1, n)", "i not in at and size < max_pixels"), "The last hole is missing"),
+        (loop("range(2, n + 1)", "i not in at and size <= max_pixels"), "Part 1 is passed over"),
+        (loop("range(1, n + 1)", "i not in at and size >= max_pixels"), "this fills the large holes"),
+        (loop("range(1, n + 1)", "i not in at and size > max_pixels"), "this fills the large holes"),
+        (loop("range(1, n + 1)", "i not in at or size <= max_pixels"), "join both by `and`"),
+        (loop("range(1, n + 1)", "i in at and size <= max_pixels"), "fills what touches the border"),
+        (loop("range(1, n + 1)", "i not in at"), "brain"),
+        (loop("range(1, n + 1)", "i not in at and size <= max_pixels", labelled="mask"), "the bone?"),
+        (
+            "h = ndimage.binary_fill_holes(mask) & ~mask; return mask | h if h.sum() <= max_pixels else mask",
+            "No hole",
+        ),
+        (
+            "h = ndimage.binary_fill_holes(mask) & ~mask; l, n = ndimage.label(h); s = np.bincount(l.ravel()); "
+            "s[0] = 0; return mask | (s <= max_pixels)[l]",
+            "was made small",
+        ),
         (
             "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()); return mask | ((s[l] <= max_pixels) & (l > 0))",
             "border",
