@@ -130,7 +130,7 @@ def _by_argument(trial: Trial) -> str:
 def _by_field(trial: Trial) -> str:
     """A field of an object that has the form of the answer."""
     kind = type(trial.found[0])
-    for name in getattr(kind, "__dataclass_fields__", None) or getattr(kind, "_fields", ()):
+    for name in (*getattr(kind, "__dataclass_fields__", ()), *getattr(kind, "_fields", ())):
         parts = [as_numbers(getattr(value, name, None)) for value in trial.found]
         wanted = [np.shape(right) for right in trial.right]
         if all(part is not None and part.shape == shape for part, shape in zip(parts, wanted, strict=True)):
