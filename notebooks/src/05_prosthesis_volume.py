@@ -58,8 +58,8 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 # We run the paper's own preset and look at one slice. It leaves out 4.5 mm of boundary at the cut: the paper's ten
 # points, as lesson 03 takes them. Over what length the tangent is fitted the paper does not say: the preset takes ten
 # points of ours, for a line through fewer would jump (lesson 03). And `k`, 0.062 px, is taken per pixel of ours too, that
-# is, times 0.9 mm. Per pixel of 0.45 mm it would be half of that, and the curves, too flat already, half as high
-# (lesson 04, section 3): of two guesses at what the authors meant the preset takes the one that comes nearer.
+# is, times 0.9 mm. Per pixel of 0.45 mm it would be half of that, and the curves, too flat already, flatter still
+# (lesson 04, section 3). What the authors meant we cannot know; the preset takes the stronger of the two.
 #
 # The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
 # `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the other: crumbs that touch only one of
