@@ -221,11 +221,11 @@ diagrams.chord_at_rest(drawn, deformable_model.PAPER_PRESSURE)
 # as lesson 03 guesses it) the parabola is half as high in mm, in the same gap:
 
 # %% tags=["nbval-check-output"]
+high = deformable_model.PAPER_PRESSURE * 20**2 / 8  # px
 for size in (case.px, 0.45):
-    wide, high = frame.length * case.px / size, deformable_model.PAPER_PRESSURE * 20**2 / 8
-    print(
-        f"pixel of {size:.2f} mm: gap {wide:.0f} px, parabola {high:.1f} px = {high * size:.1f} mm"
-    )
+    wide = frame.length * case.px / size
+    print(f"pixel of {size:.2f} mm: gap {wide:.0f} px, parabola {high:.1f} px", end=" ")
+    print(f"= {high * size:.1f} mm")
 
 # %% [markdown]
 # Either way the curve is too flat; by how much depends on this choice. The circles below take the paper's pixel: there a
