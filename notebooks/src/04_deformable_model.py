@@ -114,7 +114,8 @@ diagrams.chord_frame(drawn, expected_deg=expect)
 # Each snaxel then feels three forces. Here they are for the paper's `k` in a gap of 90 px whose ends rise at 13.8 degrees
 # (a gap in a circle, see section 3). A force has the colour of what exerts it: blue the curve, black the wind. Of the
 # blue arrows those of the tension have a full head, those of the rigidity an open one. Arrows to one side of the curve
-# stand one on another: where the rigidity points outward, it begins at the tip of the wind.
+# stand one on another: where the rigidity points outward, it begins at the tip of the wind. A force is in px: so far it
+# alone would move the snaxel in a unit of time. (`k` per index squared is the same number: the index has no unit.)
 
 # %% tags=["nbval-check-output"]
 theta = np.radians(13.8)
@@ -220,15 +221,15 @@ diagrams.chord_at_rest(drawn, deformable_model.PAPER_PRESSURE)
 # as lesson 03 guesses it) the parabola is half as high in mm, in the same gap:
 
 # %% tags=["nbval-check-output"]
+high = deformable_model.PAPER_PRESSURE * 20**2 / 8  # px
 for size in (case.px, 0.45):
-    wide, high = frame.length * case.px / size, deformable_model.PAPER_PRESSURE * 20**2 / 8
-    print(
-        f"pixel of {size:.2f} mm: gap {wide:.0f} px, parabola {high:.1f} px = {high * size:.1f} mm"
-    )
+    wide = frame.length * case.px / size
+    print(f"pixel of {size:.2f} mm: gap {wide:.0f} px, parabola {high:.1f} px", end=" ")
+    print(f"= {high * size:.1f} mm")
 
 # %% [markdown]
-# Either way the curve is too flat; how much, depends on this choice. The circles below take the paper's pixel. There a
-# gap as wide as ours, the last row, gets a third of its height, not half.
+# Either way the curve is too flat; by how much depends on this choice. The circles below take the paper's pixel: there a
+# gap as wide as ours (160 px, in the last line of the output) gets a third of its height, not half.
 #
 # And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of
 # 0.45 mm) and cut gaps into them.

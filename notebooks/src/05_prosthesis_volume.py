@@ -35,9 +35,12 @@ from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 # | name | meaning | unit | paper |
 # |---|---|---|---|
 # | `min_area_px` | of `prosthesis_volume.fill_partial_loss`: islands smaller than this are dropped | px | not given |
+# | `skip_mm` | boundary left out next to the gap (lesson 03); 1.5 if not given | mm | 10 points, here 4.5 mm |
+# | `reach_mm` | boundary that carries the tangent, after that; 10 if not given | mm | not given |
+# | `pressure_mm` | a constant `k`; if not given it follows from the ends (lesson 04) | mm per index squared | 0.062 px |
 # | `axial` | cut along the planes of the scan, or along fans (section 4) | yes or no | yes |
 # | `directions` | with fans: in how many directions the hole is cut | 1 | no fans |
-# | `coupling_mm` | with fans: how far neighbouring slices share tangents (section 5) | mm | no fans |
+# | `coupling_mm` | with fans: how far neighbouring slices share tangents (section 5); 4 if not given | mm | no fans |
 #
 # *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
 # scan of your own.
@@ -54,7 +57,9 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 #
 # We run the paper's own preset and look at one slice. It leaves out 4.5 mm of boundary at the cut: the paper's ten
 # points, as lesson 03 takes them. Over what length the tangent is fitted the paper does not say: the preset takes ten
-# points of ours, for a line through fewer would jump (lesson 03).
+# points of ours, for a line through fewer would jump (lesson 03). And `k`, 0.062 px, is taken per pixel of ours too, that
+# is, times 0.9 mm. Per pixel of 0.45 mm it would be half of that, and the curves, too flat already, flatter still
+# (lesson 04, section 3). What the authors meant we cannot know; the preset takes the stronger of the two.
 #
 # The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
 # `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the other: crumbs that touch only one of
@@ -64,7 +69,9 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 # %% tags=["nbval-check-output"]
 paper = cn.design(bone, openings, preset="paper")
 preset = cn.methods.slicewise.method.paper_options(bone)
-print(f"skip {preset['skip_mm']} mm, reach {preset['reach_mm']:.1f} mm")
+print(f"skip {preset['skip_mm']} mm, reach {preset['reach_mm']:.1f} mm,", end=" ")
+print(f"k {preset['pressure_mm']:.4f} mm per index squared;", end=" ")
+print(f"{0.062 * 0.45:.4f} with pixels of {0.45} mm")
 made = paper.working[0].slices  # the slices of the first hole
 bridged = [s for s in made if s.status == "balloon"]
 one = bridged[len(bridged) // 2]
@@ -151,7 +158,7 @@ if case.truth is not None:
 
 # %% [markdown]
 # The paper had 23 slices with an opening, 3 of them by the hull and 20 by balloons. Here nothing had to be carried over
-# or left empty.
+# or skipped. (A hull may find nothing to fill: such a slice counts as done by the hull, with a patch of 0 mm2.)
 #
 # (Dice, of lesson 00, says how well the patch and the missing bone overlap: 1 is perfect. HD95: 95 % of the distances
 # between their surfaces are smaller; lesson 07.) Both are poor for a hole whose rim is all there to be seen. It is not
@@ -244,7 +251,8 @@ for s in balloons[:2] + balloons[-3:]:
 #
 # - **`skip`.** Ten points of 0.45 mm are 4.5 mm. Who counts ten points on our pixels leaves out 9 mm on each side, and
 #   a chord 9 mm longer in all must be bridged from farther away.
-# - **`k`.** A constant in px per index squared fits one width of gap (lesson 04).
+# - **`k`.** A constant in px per index squared fits one width of gap (lesson 04). Here it counts our pixels (section 1);
+#   all that follows is for this choice.
 #
 # **Predict:** which of the two costs more here? And if both are mended, is anything left? (The *mean distance* is that
 # between the surfaces of the patch and of the missing bone, both ways.)
@@ -368,8 +376,8 @@ assert agree == 1, f"only {agree:.0%} of the region is filled: the outline is a 
 # %% [markdown]
 # ## Exercises
 #
-# **Exercise 5.1.** The outline. Join two curves (n, 2) that run the same way into one outline that goes round once.
-# (The first point may be repeated at the end, but need not.)
+# **Exercise 5.1.** The outline. Join two curves (n, 2) of (row, col) that run the same way into one outline (m, 2) of
+# (row, col) that goes round once. (The first point may be repeated at the end, but need not.)
 
 
 # %% tags=["solution"]

@@ -8,6 +8,7 @@ import pytest
 from lesson_answers import SOLUTIONS, STUBS, TEXTS, judge, written
 
 from cranio_nb.curves import cubic
+from cranio_nb.stages.deformable_model import inflate
 from cranio_nb.teaching import check
 from cranio_nb.teaching.exercises import EXERCISES
 
@@ -151,6 +152,14 @@ def test_gives_points_for_part_of_the_cases():
 def test_says_how_far_off_an_unknown_answer_is_in_its_unit():
     verdict = check.exercise("4.3", lambda length, a, b, n: cubic(length, a, b, n) + np.array([0, 5.0]))
     assert "px; 0.2 is allowed" in verdict.message
+
+
+def test_an_object_is_called_by_its_own_name():
+    def whole(length, theta0, theta1, n):
+        return inflate(cubic(length, theta0, theta1, n), np.full((2, 2), length / n), pressure=0.1)
+
+    verdict = check.exercise("4.3", whole)
+    assert "yours is a Balloon, mine an array" in verdict.compared and "`.curve`" in verdict.message
 
 
 def test_sees_a_changed_input():

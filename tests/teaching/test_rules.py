@@ -55,6 +55,11 @@ def test_masks(wrong, words):
     assert words in found and bool(words) == bool(found)
 
 
+def test_an_answer_that_holds_all_of_a_mask_is_not_told_that_what_is_missing_lies_outside():
+    found = said(lambda bone, region: bone | region, lambda bone, region: bone | (region & (GRID[0] < 4)), MASKS)
+    assert found == "All that is missing lies in `region`."
+
+
 def test_an_object_that_holds_an_answer_of_the_right_form_is_told_so():
     made = [SimpleBalloon(5, np.zeros((5, 2))), SimpleBalloon(7, np.zeros((7, 2)))]
     right = [np.ones((5, 2)), np.ones((7, 2))]

@@ -48,7 +48,7 @@ _MAKES = (
     "ends of the gap, tangents",
     "two curves across the gap",
     "voxels between them",
-    "a closed mesh",
+    "a closed mesh (blue)",
 )
 _HEIGHT_IN = 6.5
 _TILE = (0.29, 0.352)  # width and height of a picture, as shares of the drawing

@@ -28,11 +28,12 @@ def _enclosed_mm2(outline):
 
 
 def _outline_error(answer, right):
-    """Difference of the enclosed areas, mm2."""
+    """Difference of the enclosed areas, mm2; both of them where one lies beside the other."""
     outline = np.asarray(answer, float)
     if outline.ndim != 2 or outline.shape[1] != 2:
         return float("inf")
-    return abs(_enclosed_mm2(outline) - _enclosed_mm2(right))
+    beside = (outline.min(axis=0) > right.max(axis=0)) | (outline.max(axis=0) < right.min(axis=0))
+    return abs(_enclosed_mm2(outline) - (-1 if beside.any() else 1) * _enclosed_mm2(right))
 
 
 def _regions():
@@ -72,6 +73,20 @@ def _regions_of(bone):
 def _only(bone, place):
     labels, sizes = _regions_of(bone)
     return labels == np.argsort(sizes)[place]
+
+
+def _shifted(bone, min_pixels):
+    """The sizes without label 0, and the labels not moved with them."""
+    labels, sizes = _regions_of(bone)
+    keep = sizes[1:] >= min_pixels
+    keep[sizes[1:].argmax()] = False
+    return np.isin(labels, np.flatnonzero(keep))
+
+
+def _all_but_large(bone, min_pixels):
+    """What is no large region: the small ones, and with label 0 all the rest of the picture."""
+    labels, sizes = _regions_of(bone)
+    return (sizes < min_pixels)[labels]
 
 
 def _small_regions(bone, min_pixels):
@@ -114,6 +129,53 @@ EXERCISES: dict[str, Exercise] = {
                 lambda o, i: np.concatenate([o, i[:, ::-1]]),
                 "This swaps row and col of the inner curve; its order is to be turned: [::-1].",
             ),
+            *(
+                (
+                    way,
+                    "np.flip without axis turns both axes, and exchanges row and col: turn the order only, [::-1].",
+                )
+                for way in (
+                    lambda o, i: np.concatenate([o, np.flip(i)]),
+                    lambda o, i: np.concatenate([np.flip(o), i]),
+                    lambda o, i: np.concatenate([o, i[::-1]])[:, ::-1],
+                )
+            ),
+            *(
+                (
+                    lambda o, i, turn=turn: np.append(o, i[::turn]),
+                    "np.append makes one row of all numbers, unless it is told axis=0.",
+                )
+                for turn in (1, -1)
+            ),
+            *(
+                (
+                    lambda o, i, turn=turn: np.stack([o, i[::turn]]),
+                    "These are two curves in one array, (2, n, 2): np.concatenate joins them end to end.",
+                )
+                for turn in (1, -1)
+            ),
+            (
+                lambda o, i: np.concatenate([o, np.sort(i, axis=0)[::-1]]),
+                "np.sort orders rows and columns each by itself: turn the curve as it is, [::-1].",
+            ),
+            *(
+                (way, "A point at an end is lost: the outline goes through both ends of both curves.")
+                for way in (
+                    lambda o, i: np.concatenate([o, i[1:-1][::-1]]),
+                    lambda o, i: np.concatenate([o[:-1], i[::-1][:-1]]),
+                    lambda o, i: np.concatenate([o, i[::-1][1:]]),
+                    lambda o, i: np.concatenate([o[:-1], i[::-1]]),
+                    lambda o, i: np.concatenate([o, i[:0:-1]]),
+                )
+            ),
+            (
+                lambda o, i: np.concatenate([o, i[::-1], o]),
+                "The outer curve is walked twice: at most its first point is repeated.",
+            ),
+            (
+                lambda o, i: np.concatenate([o, -i]),
+                "A minus mirrors the curve at 0, 0; [::-1] turns its order round.",
+            ),
             (lambda o, i: o + i[::-1], "This adds the coordinates; np.concatenate joins the points."),
             (lambda o, i: o - i, "This is the step from curve to curve; np.concatenate joins the points."),
         ),
@@ -147,6 +209,19 @@ EXERCISES: dict[str, Exercise] = {
             ),
             (lambda r, b: ~r, "This is everything outside the region."),
             (lambda r, b: b, "This is the bone that is there already."),
+            *(
+                (way, "This holds what is outside the region as well: both must hold, so join by `&`.")
+                for way in (lambda r, b: r | ~b, lambda r, b: r >= b, lambda r, b: r & b | ~b)
+            ),
+            (lambda r, b: ~(r | b), "This is what is neither in the region nor bone."),
+            (
+                lambda r, b: ndimage.binary_erosion(r) & ~b,
+                "The edge of the region is lost: no erosion is needed.",
+            ),
+            (
+                lambda r, b: ndimage.binary_dilation(r) & ~b,
+                "The region has grown by a pixel: no dilation is needed.",
+            ),
             (lambda r, b: r.astype(int) - b, "Numbers with -1 among them: masks are joined by & and ~."),
             (
                 lambda r, b: r & ~ndimage.binary_dilation(b),
@@ -181,6 +256,15 @@ EXERCISES: dict[str, Exercise] = {
                 lambda b, m: _lost(b, m + 1, _SIDES),
                 "A region of just min_pixels stays (>=), and pixels that touch at a corner belong together.",
             ),
+            (
+                lambda b, m: np.zeros_like(b),
+                "Nothing is left. Was the bone taken from the hull before labelling? A part alone is the biggest.",
+            ),
+            (
+                _shifted,
+                "bincount(...)[1:] begins with region 1: each mark went to the label before.",
+            ),
+            (_all_but_large, "Turned round, and label 0 with it: what has min_pixels and more stays."),
             (
                 lambda b, m: convex_hull_image(b) & ~b,
                 "This is the whole difference: the biggest region and the islands must go.",

@@ -96,7 +96,7 @@ EXERCISES: dict[str, Exercise] = {
             *(
                 (
                     lambda a, b, size=size: (a & b).sum() / size(a.sum(), b.sum()),
-                    "This divides by one size, or a mean of both that is not theirs: Dice takes their sum.",
+                    "This divides by the larger size, the smaller, or the root of their product: Dice takes their sum.",
                 )
                 for size in (max, min, lambda m, n: np.sqrt(float(m) * n))
             ),

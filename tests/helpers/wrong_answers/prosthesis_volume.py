@@ -17,7 +17,19 @@ WRONG = {
         ("return np.concatenate([outer, inner[:, ::-1]])", "This swaps row and col of the inner curve"),
         ("return outer + inner[::-1]", "This adds the coordinates"),
         ("return (outer + inner) / 2", "This is the middle between the curves"),
-        ("return [outer, inner[::-1]]", None),
+        ("return [outer, inner[::-1]]", "two curves in one array"),
+        ("return np.stack([outer, inner])", "two curves in one array"),
+        ("return np.append(outer, inner[::-1])", "axis=0"),
+        ("return np.concatenate([outer, np.flip(inner)])", "np.flip without axis"),
+        ("return np.concatenate([np.flip(outer), inner])", "np.flip without axis"),
+        ("return np.flip(np.concatenate([outer, inner[::-1]]))", "np.flip without axis"),
+        ("return np.concatenate([outer, inner[::-1]])[:, ::-1]", "np.flip without axis"),
+        ("return np.concatenate([outer, np.fliplr(inner)])", "This swaps row and col of the inner curve"),
+        ("return np.concatenate([outer, np.sort(inner, axis=0)[::-1]])", "np.sort orders"),
+        ("return np.concatenate([outer, inner[1:-1][::-1]])", "A point at an end is lost"),
+        ("return np.concatenate([outer[:-1], inner[::-1][:-1]])", "A point at an end is lost"),
+        ("return np.concatenate([outer, inner[::-1], outer])", "walked twice"),
+        ("return np.concatenate([outer, -inner])", "A minus mirrors"),
         ("return np.concatenate([outer, inner[::-1]]).T", "Rows and columns are exchanged"),
         ("return outer - inner", "This is the step from curve to curve"),
         ("return np.hstack([outer, inner[::-1]])", "Joined side by side"),
@@ -41,8 +53,11 @@ WRONG = {
         ("return bone", "This is the bone that is there already"),
         ("return ~region", "This is everything outside the region"),
         ("return np.logical_not(bone)", "This is everything that is not bone"),
-        ("return region | ~bone", None),
-        ("return ~region & ~bone", "All that is too much lies outside `region`"),
+        ("return region | ~bone", "join by `&`"),
+        ("return region >= bone", "join by `&`"),
+        ("return ~region & ~bone", "neither in the region nor bone"),
+        ("return ndimage.binary_erosion(region) & ~bone", "no erosion"),
+        ("return ndimage.binary_dilation(region) & ~bone", "no dilation"),
         ("return region & ~region", "The function does not use `bone`"),
         ("return np.where(bone, region, 0)", "This is just the part that must go"),
     ],
@@ -84,7 +99,7 @@ WRONG = {
                 "l = measure.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel()); "
                 "s[0] = 0; k = s < min_pixels; return k[l]"
             ),
-            None,
+            "Turned round, and label 0",
         ),
         (
             (
@@ -101,6 +116,26 @@ WRONG = {
             None,
         ),
         ("return convex_hull_image(bone)", "This is the whole hull"),
+        (
+            "l = measure.label(convex_hull_image(bone)); s = np.bincount(l.ravel()); s[0] = 0; "
+            "k = s >= min_pixels; k[s.argmax()] = False; return k[l]",
+            "before labelling",
+        ),
+        (
+            "l = measure.label(bone); s = np.bincount(l.ravel()); s[0] = 0; k = s >= min_pixels; "
+            "k[s.argmax()] = False; return k[l]",
+            "before labelling",
+        ),
+        (
+            "l = measure.label(convex_hull_image(bone)); s = np.bincount(l.ravel()); s[0] = 0; "
+            "return (s >= min_pixels)[l] & ~bone",
+            "whole difference",
+        ),
+        (
+            "l = measure.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel())[1:]; "
+            "k = s >= min_pixels; k[s.argmax()] = False; return np.isin(l, np.flatnonzero(k))",
+            "begins with region 1",
+        ),
         (
             (
                 "l = measure.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel()); "
