@@ -192,19 +192,27 @@ def _affine(
     # columns of the affine: one step along each axis, in the file's own frame and unit
     signs = signs or (1, 1, 1)
     if directions is None:
-        spacings = header.get("spacings", (np.nan,) * 3)
-        columns = np.diag([float(s) for s in spacings[:3]])
+        columns = np.diag(_three(header, "spacings", np.nan))
     else:
         columns = np.stack([np.full(3, np.nan) if d is None else d for d in directions], axis=1)
-    origin = header.get("space origin")
-    if origin is None:
+    if header.get("space origin") is None:
         findings.append(Finding("NoOrigin", "warning", "The file states no origin: (0, 0, 0) was taken.", {}))
 
     # mm, LPS
     affine = np.eye(4)
-    affine[:3, :3], affine[:3, 3] = columns, np.zeros(3) if origin is None else np.asarray(origin, float)
+    affine[:3, :3], affine[:3, 3] = columns, _three(header, "space origin", 0.0)
     affine[:3] *= _unit(header)
     return np.diag([*signs, 1.0]) @ affine, findings
+
+
+def _three(header: dict[str, Any], field: str, absent: float) -> NDArray[np.float64]:
+    """The numbers of a field, one for each axis in space; axes outside space come after them, if at all."""
+    numbers = header.get(field)
+    if numbers is None:
+        return np.full(3, absent)
+    if len(numbers) < 3:
+        raise _corrupt(f"its {field} does not hold three numbers")
+    return np.asarray(numbers[:3], float)
 
 
 def _unit(header: dict[str, Any]) -> float:

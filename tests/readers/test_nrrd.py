@@ -45,8 +45,19 @@ def test_other_nrrd_ways_are_refused(tmp_path: Path) -> None:
         ("sizes", None, "CorruptFile"),
         ("sizes", "30 26 x", "CorruptFile"),
         ("space origin", "(\u00fc22,0,0)", "CorruptFile"),
+        ("space origin", "(0,0)", "CorruptFile"),
         ("space units", '"furlong" "furlong" "furlong"', "BadGeometry"),
     ):
         path = write_nrrd(tmp_path / "a.nrrd", voxels, lps)
         rewrite_header(path, field, value)
         assert file_refusal(path).code == code, field
+
+
+def test_two_spacings_of_three_are_damage(tmp_path: Path) -> None:
+    voxels, lps = stored_head()
+    path = write_nrrd(tmp_path / "a.nrrd", voxels, lps)
+    for field, value in (("space directions", None), ("space", None), ("space origin", None)):
+        rewrite_header(path, field, value)
+    path.write_bytes(path.read_bytes().replace(b"\nencoding:", b"\nspacings: 1 1\nencoding:", 1))
+    refused = file_refusal(path, allow=("no_orientation",))
+    assert refused.code == "CorruptFile" and "spacings" in refused.message
