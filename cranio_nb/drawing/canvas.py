@@ -242,7 +242,7 @@ class Canvas:
                 top = y + height / 2 + 2 * sign * along * (height / 2 - _LETTER)
                 self.text(left, top, side_letter(sign * way), size=14, anchor="mm", halo=True)
 
-    def legend(self, x: float, y: float, entries: Sequence[tuple[str, str, str]]) -> None:
+    def legend(self, x: float, y: float, entries: Sequence[tuple[str | Sequence[str], str, str]]) -> None:
         """Draw a legend, one entry below the other, on white.
 
         Parameters
@@ -250,7 +250,7 @@ class Canvas:
         x, y : float
             Its upper left corner.
         entries : sequence of (colour, kind, text)
-            The kind is "line", "dash", "dot" or "area".
+            The kind is "line", "dash", "dot" or "area"; an area may have several colours, drawn from left to right.
         """
         # as wide as the longest text, 18 px for each entry
         font = _font(_SCALE * 12)
@@ -258,7 +258,10 @@ class Canvas:
         self.area((x, y, width, 18 * len(entries) + 6), WHITE)
         for i, (colour, kind, text) in enumerate(entries):
             middle = y + 12 + 18 * i
-            if kind == "area":
+            if not isinstance(colour, str):
+                for k, tone in enumerate(colour):
+                    self.area((x + 8 + 20 * k / len(colour), middle - 5, 20 / len(colour), 10), tone)
+            elif kind == "area":
                 self.area((x + 8, middle - 5, 20, 10), colour)
             elif kind == "dot":
                 self.dots([(x + 18, middle)], colour, radius=4, edge=BLACK)

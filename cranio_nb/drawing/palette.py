@@ -1,7 +1,9 @@
 """The colours of all pictures, by name and by meaning, the sizes of their writing, the letters of the patient's sides.
 
 The bright ones are those of Okabe and Ito 2008, told apart by the colour-blind. A colour has one meaning, and what it
-means is told by a word, a line style or a shape as well. An arrow for a force has the colour of what exerts it.
+means is told by a word, a line style or a shape as well. An arrow for a force has the colour of what exerts it. Only
+where things of one kind are told apart (curves or methods compared, pieces of bone, kinds of slices) do the bright ones
+serve in turn, each named beside.
 """
 
 from __future__ import annotations
@@ -25,9 +27,13 @@ INNER = VERMILLION
 TANGENT = GREEN
 """The way the bone was going at an end of the gap."""
 START = ORANGE
-"""The curve that a balloon starts from; dashed."""
+"""What a shape is made from: the curve that a balloon starts from, dashed; guiding points; the control net."""
+GUIDE = YELLOW
+"""Lines over a CT that lead to a place."""
 MEASURE = GREY
 """What is measured or only helps to see: chord, angles, lengths, frames."""
+COUNTS = "#ACACAC"
+"""Bars of a histogram."""
 PRESSURE = BLACK
 NO_VALUE = "#C9C9C9"
 """A surface beside one that is coloured by numbers."""

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from ..mesh import Mesh
 from .canvas import round_length
 from .palette import BLACK
-from .scene_picture import Part
+from .scene_picture import Part, named_colours, top_of_scale
 
-_SWATCH = '<span style="background:{};display:inline-block;width:20px;height:10px;margin-right:6px"></span>{}'
+_SWATCH = '<span style="background:{};display:inline-block;width:{}px;height:10px;margin-right:6px"></span>{}'
+_SWATCH_PX, _SCALE_PX = 20, 120
 
 
 def legend(parts: Sequence[Part], unit: str) -> str:
@@ -40,15 +41,15 @@ def legend(parts: Sequence[Part], unit: str) -> str:
     >>> "background:#0072B2" in shown, "a &amp; b" in shown, "20 mm" in shown
     (True, True, True)
     """
-    # parts with values have no colour of their own: the scale in the scene is theirs
-    words = [
-        _SWATCH.format(part.colour, html.escape(part.label))
-        if part.values is None
-        else f"{html.escape(part.label)}: coloured by the scale ({html.escape(unit)})"
-        for part in parts
-        if part.label
-    ]
-    words.append(_SWATCH.format(BLACK, f"{bar_length([part.mesh for part in parts]):g} mm"))
+    top = top_of_scale(parts)
+    words = []
+    for tones, name in named_colours(parts):
+        if len(tones) == 1:
+            words.append(_SWATCH.format(tones[0], _SWATCH_PX, html.escape(name)))
+        else:  # a scale between its two ends
+            bar = _SWATCH.format(f"linear-gradient(to right,{','.join(tones)})", _SCALE_PX, "")
+            words.append(f"{html.escape(name)}: 0 {bar}&ge; {top:.2g} {html.escape(unit)}")
+    words.append(_SWATCH.format(BLACK, _SWATCH_PX, f"{bar_length([part.mesh for part in parts]):g} mm"))
     return f'<div style="line-height:1.6">{"&emsp;".join(words)}</div>'
 
 

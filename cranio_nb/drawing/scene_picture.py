@@ -22,6 +22,7 @@ WIDTH, HEIGHT = 640, 480
 """Size of a picture, px, without the colour scale."""
 _BAR_HEIGHT, _BAR_LENGTH = 56, 280  # px, of the colour scale
 _LEAST_TOP = 1e-3
+_N_TONES = 5  # of the scale beside a name
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,6 +63,29 @@ def top_of_scale(parts: Sequence[Part]) -> float | None:
     return max(float(np.percentile(np.concatenate(values), 99)), _LEAST_TOP) if values else None
 
 
+def named_colours(parts: Sequence[Part]) -> list[tuple[tuple[str, ...], str]]:
+    """The colours of the named parts of a scene, beside their names.
+
+    Parameters
+    ----------
+    parts : sequence of Part
+
+    Returns
+    -------
+    list of (colours, name)
+        One colour, or those of the scale from its lower to its upper end where numbers give the colour.
+
+    Examples
+    --------
+    >>> flat = Mesh(np.eye(3), np.array([[0, 1, 2]]))
+    >>> named_colours([Part(flat, "#0072B2", "skull", None), Part(flat, "#0072B2", "distance", np.arange(3.0))])
+    [(('#0072B2',), 'skull'), (('#00224E', '#434E6C', '#7D7C78', '#BCAE6C', '#FEE838'), 'distance')]
+    """
+    scale = np.rint(colour_scale(1.0).to_rgba(np.linspace(0.0, 1.0, _N_TONES)) * 255).astype(int)[:, :3]
+    tones = tuple("#{:02X}{:02X}{:02X}".format(*tone) for tone in scale.tolist())
+    return [((part.colour,) if part.values is None else tones, part.label) for part in parts if part.label]
+
+
 def draw_parts(parts: Sequence[Part], towards: NDArray[np.float64], *, unit: str = "mm") -> RGB:
     """Draw the parts of a scene.
 
@@ -93,9 +117,9 @@ def draw_parts(parts: Sequence[Part], towards: NDArray[np.float64], *, unit: str
     canvas.place(seen, (width - wide) / 2, 10)
     canvas.sides((0, 0, width, tall + 20), *view_axes(towards)[:2])
     # names, a length, and what the colours mean
-    named = [(part.colour, "area", part.label) for part in parts if part.label and part.values is None]
+    named = named_colours(parts)
     if named:
-        canvas.legend(6, 6, named)
+        canvas.legend(6, 6, [(tones, "area", name) for tones, name in named])
     length = round_length(0.2 * wide * px_mm)
     canvas.scale_bar(14, tall + 28, length / px_mm, f"{length:g} mm")
     if top:

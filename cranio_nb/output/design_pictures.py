@@ -71,7 +71,7 @@ def cut_shots(result: RunResult) -> list[Shot]:
             at = f"{name} cut, {_position(case, name, place)}"
             alt = (
                 f"{what}, {at}, seen {_SEEN[name]}, through opening {one.number} ({one.size.place}): bone is bright,"
-                " the patch blue; orange lines show where the two other cuts lie; letters at the edges name the"
+                " the patch blue; yellow lines show where the two other cuts lie; letters at the edges name the"
                 " patient's sides; the scale bar is 50 mm."
             )
             shots.append(shot(figure, alt=_capital(alt), caption=f"{_capital(at)}, seen {_SEEN[name]}"))

@@ -27,6 +27,7 @@ from ..drawing.palette import (
     SKULL,
     TRUTH,
     VERMILLION,
+    faded,
     rgb_shares,
 )
 from ..drawing.scene3d import show_meshes as show_scene
@@ -44,6 +45,7 @@ __all__ = [
     "GREEN",
     "LINES",
     "MASKS",
+    "MIDDLE_GREY",
     "SKULL",
     "axes",
     "key",
@@ -68,6 +70,7 @@ LINES = ((BLUE, "-"), (VERMILLION, "--"), (GREEN, "-."), (PURPLE, ":"), (BLACK, 
 MASKS = {
     "bone": (BONE, "bone"),
     "patch": (PATCH, "patch"),
+    "between": (faded(PATCH), "between the curves"),
     "right": (PATCH, "patch on missing bone"),
     "missing": (TRUTH, "missing bone, no patch"),
     "extra": (BLUE, "patch, no missing bone"),

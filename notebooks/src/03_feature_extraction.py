@@ -101,7 +101,9 @@ bar = (np.abs(0.94 * col + 0.34 * row) < 25) & (np.abs(0.94 * row - 0.34 * col) 
 raw, kept = classroom.skeleton(bar), feature_extraction.extract_features(bar).skeleton[0]
 fig, (ax,) = pictures.axes(height=3.6, width=6.0)
 pictures.show_mask(ax, bar, px=1, title="one end of a bar, cut squarely")
-pictures.show_points(ax, raw, px=1, colour="#E69F00", marker="s", label="raw skeleton")
+pictures.show_points(
+    ax, raw, px=1, colour=pictures.MIDDLE_GREY, marker="s", label="raw skeleton"
+)
 pictures.show_curve(ax, kept, px=1, line=4, label="path kept")
 (row, col), half = kept[-1], 13
 ax.set(xlim=(col - half, col + half), ylim=(row + half, row - half), xlabel="px", ylabel="px")
@@ -116,9 +118,9 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # about the skull. So the first pixels are left out (`skip`), and a line is fitted to the next ones (`reach`). Both are
 # lengths along the skeleton.
 #
-# In the picture below a **white circle** is an end of the balloon: the pixel nearest to the gap that is still used. The
-# thin **black line** is the line that was fitted: it goes through the mean of the pixels used. The **green arrow** has
-# its direction, but starts at the white circle. theta0 (at end 1) and theta1 (at end 2) of the caption are the angles
+# In the picture below the pixels used are **green**, and a **white circle** is an end of the balloon: the one of them
+# that is nearest to the gap. The thin **black line** is the line that was fitted: it goes through the mean of the pixels
+# used. The **green arrow** has its direction, but starts at the white circle. theta0 (at end 1) and theta1 (at end 2) of the caption are the angles
 # between the outer arrows and the chord, the straight line between their two circles. Both count from the direction
 # that leads from end 1 to end 2, so theta1, whose arrow comes the other way, is obtuse. Beside each stands the angle to
 # expect there, which section 4 explains. The caption counts the points of both ends together.

@@ -58,8 +58,8 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 #
 # The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
 # `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the other: crumbs that touch only one of
-# them are dropped. (In the left picture the light blue is still all that lies between the curves; in the
-# right one the bone is taken away, and it is the patch.)
+# them are dropped. The left picture shows all that lies between the curves; in the right one the bone is taken away,
+# and what is left is the patch.
 
 # %% tags=["nbval-check-output"]
 paper = cn.design(bone, openings, preset="paper")
@@ -76,7 +76,7 @@ print(f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px wi
 
 # %% tags=["nbval-check-output"]
 fig, (left, right) = pictures.slices(2, bone, around=[outer, inner], height=4.6, width=7.0)
-pictures.show_mask(left, region, px=px, meaning="patch", title="between the curves")
+pictures.show_mask(left, region, px=px, meaning="between", title="between the curves")
 pictures.show_mask(right, bone.voxels[plane], px=px)
 pictures.show_mask(right, patch, px=px, meaning="patch", title="minus bone: the patch")
 for ax in (left, right):

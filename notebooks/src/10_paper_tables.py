@@ -579,7 +579,7 @@ check.exercise("10.2", end_angle)
 fig, (ax,) = pictures.axes(height=3.0)
 chords = np.linspace(5, 100, 40)
 curves = {f"R = {r} mm": [end_angle(c, r) for c in chords] for r in (70, 80, 90)}
-ax.axhspan(4, 22, color="#999999", alpha=0.2, label="the paper's outer theta0")
+ax.axhspan(4, 22, color=pictures.MIDDLE_GREY, alpha=0.2, label="the paper's outer theta0")
 pictures.plot_lines(ax, chords, curves, xlabel="gap (mm)", ylabel="theta0 (degrees)")
 alt = "Three rising curves of angle against gap; a grey band from 4 to 22 degrees."
 pictures.picture(fig, alt, f"80 mm: {end_angle(60, 80):.1f} degrees for a gap of 60 mm")

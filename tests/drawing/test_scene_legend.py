@@ -1,5 +1,7 @@
 """What stands above a live scene tells each colour and a length that fits."""
 
+import re
+
 import numpy as np
 import pytest
 from shapes import cube
@@ -22,6 +24,8 @@ def test_vertices_that_no_face_uses_do_not_count():
 
 def test_a_part_with_numbers_has_a_scale_in_place_of_a_colour():
     mesh = cube(40)
-    parts = [Part(mesh, "#EDE7D8", "skull", None), Part(mesh, "#0072B2", "distance", np.zeros(len(mesh.vertices)))]
+    parts = [Part(mesh, "#EDE7D8", "skull", None), Part(mesh, "#0072B2", "distance", np.full(len(mesh.vertices), 3.0))]
     shown = legend(parts, "mm")
-    assert "background:#EDE7D8" in shown and "#0072B2" not in shown and "distance: coloured by the scale (mm)" in shown
+    assert "background:#EDE7D8" in shown and "#0072B2" not in shown
+    bar = re.search(r"distance: 0 <span [^>]*linear-gradient\(to right,([^)]*)\)[^>]*></span>&ge; 3 mm", shown)
+    assert bar[1].startswith("#00224E,") and bar[1].endswith(",#FEE838")

@@ -23,6 +23,13 @@ def test_named_parts_are_in_the_legend():
     assert (shown[:60, :60] == rgb_of(ORANGE)).all(axis=2).sum() == pytest.approx(200, abs=40)
 
 
+def test_a_part_coloured_by_numbers_is_in_the_legend_with_its_scale():
+    named, nameless = (draw_parts([Part(cube(40), BLUE, name, np.arange(8.0))], FRONT) for name in ("distance", ""))
+    swatch = named[18, 14:34].astype(int)  # dark blue at the left, yellow at the right
+    assert swatch[1, 2] > swatch[1, 0] and swatch[-2, 0] > swatch[-2, 2] + 100
+    assert (nameless[18, 14:34] > 250).all()
+
+
 def test_the_top_of_the_scale_is_above_nearly_all():
     values = np.arange(8.0)
     assert top_of_scale([Part(cube(1), BLUE, "", None)]) is None

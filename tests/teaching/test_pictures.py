@@ -2,6 +2,8 @@
 
 import numpy as np
 import pytest
+from cut_texts import cut_texts
+from shapes import cube
 
 from cranio_nb.drawing.palette import rgb_of
 from cranio_nb.mesh import Mesh
@@ -84,3 +86,23 @@ def test_a_curve_and_a_slice_of_hu_share_their_axes():
     pictures.show_curve(ax, [[0, 0], [19, 29]], px=PX, line=1)
     assert ax.images[0].get_clim() == (-100, 300)
     np.testing.assert_allclose(ax.lines[0].get_xydata(), [[0, 0], [14.5, 9.5]])
+
+
+@pytest.mark.parametrize("height", [2.0, 3.2, 4.2])
+@pytest.mark.parametrize("n", [1, 3, 4])
+def test_no_word_of_a_picture_is_cut_however_high_it_is(n, height):
+    figure, panels = pictures.slices(
+        n, Volume(np.zeros((2, 100, 80), bool), np.diag([2, 0.5, 0.5, 1.0])), height=height
+    )
+    for ax in panels:
+        pictures.show_mask(ax, np.zeros((100, 80), bool), px=PX, title="raw, slightly")
+    pictures.key(figure)
+    assert cut_texts(figure) == []
+
+
+@pytest.mark.parametrize("height", [2.6, 4.4])
+def test_no_word_of_a_picture_of_meshes_is_cut(height):
+    figure, panels = pictures.axes(2, height=height)
+    for ax in panels:
+        pictures.show_meshes(ax, [(cube(30), pictures.BLUE)], (1, 0.3, 0.4), title="raw, slightly")
+    assert cut_texts(figure) == []

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy import ndimage
 
 from ...volume import Volume
-from ..palette import ORANGE, PATCH, PROSTHESIS, WHITE, rgb_shares
+from ..palette import GUIDE, PATCH, PROSTHESIS, WHITE, rgb_shares
 from .axes import Figure, name_sides, scale_bar, show_pixels
 
 CUTS = {
@@ -60,8 +60,8 @@ def cut_figure(
     # where the two other cuts lie, left open around the place itself
     x, y = (np.asarray(place, float) - points[0, 0]) @ np.stack([right, down], axis=1) / px_mm
     gap, (n_rows, n_cols) = _OPEN_MM / px_mm, rgb.shape[:2]
-    ax.hlines([y, y], [0, min(x + gap, n_cols)], [max(x - gap, 0), n_cols - 1], colors=ORANGE, lw=0.8)
-    ax.vlines([x, x], [0, min(y + gap, n_rows)], [max(y - gap, 0), n_rows - 1], colors=ORANGE, lw=0.8)
+    ax.hlines([y, y], [0, min(x + gap, n_cols)], [max(x - gap, 0), n_cols - 1], colors=GUIDE, lw=0.8)
+    ax.vlines([x, x], [0, min(y + gap, n_rows)], [max(y - gap, 0), n_rows - 1], colors=GUIDE, lw=0.8)
     name_sides(ax, np.stack([right, down]), colour=WHITE)
     scale_bar(ax, 50.0 / px_mm, "50 mm", colour=WHITE)
     return figure

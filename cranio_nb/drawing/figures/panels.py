@@ -70,6 +70,8 @@ def name_panel(ax: Axes, title: str) -> None:
         E.g. "(a) bone".
     """
     ax.set_title(title, loc="left", fontsize=_SMALL_PT)
+    # at the top of its place: room for a title is measured there, also where a picture is lower than its place
+    ax.set_anchor("N")
 
 
 def slice_panel(

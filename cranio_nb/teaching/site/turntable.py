@@ -14,6 +14,7 @@ from ...drawing.canvas import Canvas, round_length
 from ...drawing.figures import colour_scale
 from ...drawing.palette import GREY, rgb_shares
 from ...drawing.scene3d import Scene
+from ...drawing.scene_picture import named_colours
 from ...drawing.shading import Solid, render, view_axes
 from ...drawing.thinning import thin_mesh
 from ..widgets import Panel, View
@@ -93,9 +94,9 @@ def _view(scene: Scene, solids: list[Solid], turn: int, rise: int) -> View:
 
 def _annotate(canvas: Canvas, scene: Scene, axes: NDArray[np.float64], px_mm: float) -> None:
     """Names of the parts, sides of the patient, a length, and what the colours mean."""
-    named = [(part.colour, "area", part.label) for part in scene.parts if part.label and part.values is None]
+    named = named_colours(scene.parts)
     if named:
-        canvas.legend(6, 6, named)
+        canvas.legend(6, 6, [(tones, "area", name) for tones, name in named])
     for letter, direction in _SIDES.items():
         right, down, _ = axes @ np.array(direction, float)
         if np.hypot(right, down) > 0.7:  # else it lies on the head, or behind it

@@ -16,14 +16,13 @@ from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
 from ...drawing.palette import (
     BLACK,
-    BLUE,
     BONE,
     GREY,
-    ORANGE,
-    SKY,
+    MEASURE,
+    OUTER,
+    START,
     TANGENT,
     TRUTH,
-    VERMILLION,
     WHITE,
     faded,
     side_letter,
@@ -40,7 +39,7 @@ _K_UNIT = "px per index\N{SUPERSCRIPT TWO}"
 _HIGH, _CHORD = 300, 195  # px: height of the gap's picture, and where its chord lies
 _SEEN = 1.2  # width of the gap's picture, in lengths of the chord
 _SIDES = ((-1, 0), (1, 0), (0, -1), (0, 1))  # slice (row, col)
-_START, _BALLOON, _GHOST = ORANGE, BLUE, faded(TRUTH)
+_START, _BALLOON, _GHOST = START, OUTER, faded(TRUTH)
 
 
 def balloon(
@@ -262,16 +261,16 @@ def _draw_way(canvas: Canvas, run: Inflation, step: int, tol: float) -> None:
     top, wide, high = _HIGH + 4, WIDTH // 2, HEIGHT - _HIGH - 4
     changes = Chart((0, top, wide, high), (0, last + 1), (low, 2 * max(run.change.max(), tol)), log=True)
     changes.frame(canvas, "||dc||: how far a step moves the curve (px)", "step")
-    changes.level(canvas, tol, VERMILLION, dash=(6, 4))
+    changes.level(canvas, tol, MEASURE, dash=(6, 4))
     (x, y), *_ = changes.px([[0, tol]])
-    canvas.text(x + 6, y - 5, "tol", size=12, colour=VERMILLION)
-    canvas.line(changes.px(np.column_stack([steps, run.change])), BLUE, width=2)
+    canvas.text(x + 6, y - 5, "tol", size=12, colour=MEASURE)
+    canvas.line(changes.px(np.column_stack([steps, run.change])), OUTER, width=2)
     # right: the energy
     least, most = run.energy.min(), run.energy.max()
     margin = max(0.08 * (most - least), 1e-3 * most)
     energies = Chart((wide, top, wide, high), (0, last + 1), (least - margin, most + margin))
     energies.frame(canvas, "energy of stretching and bending (px\N{SUPERSCRIPT TWO})", "step")
-    canvas.line(energies.px(np.column_stack([np.arange(last + 1), run.energy])), SKY, width=2)
+    canvas.line(energies.px(np.column_stack([np.arange(last + 1), run.energy])), MEASURE, width=2)
     if step:
         canvas.dots(changes.px([[step, run.change[step - 1]]]), WHITE, radius=5, edge=BLACK)
     canvas.dots(energies.px([[step, run.energy[step]]]), WHITE, radius=5, edge=BLACK)

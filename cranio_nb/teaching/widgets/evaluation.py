@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
-from ...drawing.palette import BLACK, SKY, VERMILLION, WHITE
+from ...drawing.palette import BLACK, COUNTS, WHITE
 from ...drawing.shading import Solid, render
 from ...errors import InputRefused
 from ...evaluation import mesh_distances
@@ -128,9 +128,9 @@ def _view(known: DistanceMap, side: str, top_mm: float, limit_mm: float) -> View
     counts, edges = np.histogram(np.minimum(known.distances, high), 60, (0, high))
     chart = Chart((RIGHT[0], 20, RIGHT[2], 340), (0, high), (0, 1.1 * counts.max()))
     chart.frame(canvas, "nodes", "distance (mm)")
-    chart.bars(canvas, edges, counts, SKY)
+    chart.bars(canvas, edges, counts, COUNTS)
     if limit_mm <= high:
-        chart.upright(canvas, limit_mm, VERMILLION, dash=(6, 4))
+        chart.upright(canvas, limit_mm, BLACK, dash=(6, 4))
     # the scale below the histogram, as wide as its axis
     x, _, width, _ = chart.area
     draw_colour_scale(canvas, (x, 420), round(width), top_mm)

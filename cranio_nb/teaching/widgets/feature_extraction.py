@@ -15,7 +15,7 @@ from scipy.spatial import HalfspaceIntersection
 
 from ...curves import ChordFrame, GapEnds, Points, SliceFeatures
 from ...drawing.canvas import Canvas
-from ...drawing.palette import BLACK, BONE, GREY, INNER, ORANGE, OUTER, SKY, TANGENT, WHITE, rgb_of
+from ...drawing.palette import BLACK, BONE, GREY, INNER, OUTER, TANGENT, WHITE, rgb_of
 from ...drawing.pixels import RGB, Window, plain, tinted
 from ...stages import feature_extraction as stage
 from ...volume import Volume
@@ -177,10 +177,10 @@ def _draw_background(part: Slices, plane: int) -> tuple[Canvas, RGB, SliceFeatur
     annotate_slice(canvas, window, part.bone, plane)
     # the legend lies in the cavity, where nothing is drawn
     outer_name, inner_name = "outer boundary, B \N{MINUS SIGN} S", "inner boundary, B \N{INTERSECTION} S"
-    bounds = [(SKY, "area", outer_name), (ORANGE, "area", inner_name)]
+    bounds = [(OUTER, "area", outer_name), (INNER, "area", inner_name)]
     lines = [(BLACK, "line", "spine"), (GREY, "dash", "hull S")]
-    used = [(OUTER, "dot", "used, outer"), (INNER, "dot", "used, inner"), (TANGENT, "line", "tangents")]
-    canvas.legend(LEFT / 2 - 90, HEIGHT / 2 - 66, [*bounds, *lines, *used])
+    used = [(TANGENT, "dot", "used for a tangent"), (TANGENT, "line", "tangents")]
+    canvas.legend(LEFT / 2 - 90, HEIGHT / 2 - 57, [*bounds, *lines, *used])
     return canvas, rgb, found, outside
 
 
@@ -190,7 +190,6 @@ class Fit:
 
     ends: GapEnds
     used: tuple[Points, ...]
-    colour: str
 
 
 def _fit(found: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, *, skip_px: float, reach_px: float) -> Fit:
@@ -204,13 +203,13 @@ def _fit(found: SliceFeatures, outside: NDArray[np.bool_], ends: GapEnds, *, ski
     for point in ends.points:
         run = min(runs, key=lambda r: np.hypot(*(r[0] - point)))
         used.append(boundary[stage.select_tangent_points(boundary, run, skip_px=skip_px, reach_px=reach_px)])
-    return Fit(ends, tuple(used), OUTER if is_outer else INNER)
+    return Fit(ends, tuple(used))
 
 
 def _slice_picture(mask: NDArray[np.bool_], found: SliceFeatures) -> RGB:
     """Bone with its outer and inner boundary pixels, shape (R, C, 3)."""
     rgb = tinted(plain(mask.shape), mask, BONE)
-    for points, colour in ((found.outer, SKY), (found.inner, ORANGE)):
+    for points, colour in ((found.outer, OUTER), (found.inner, INNER)):
         row, col = points.astype(np.intp).T
         rgb[row, col] = rgb_of(colour)
     return rgb
@@ -235,7 +234,7 @@ def _draw_ends(canvas: Canvas, window: Window, fits: list[Fit], px: float, size:
     """Used points, fitted lines, tangents and gap ends."""
     for fit in fits:
         for points, end, tangent in zip(fit.used, fit.ends.points, fit.ends.tangents, strict=True):
-            canvas.dots(window.px(points), fit.colour, radius=1.2 * size + 0.6)
+            canvas.dots(window.px(points), TANGENT, radius=1.2 * size + 0.6)
             # the fitted line goes through the mean of the used points; the tangent starts at the end, beside it
             middle = points.mean(axis=0)
             along = (points - middle) @ tangent
@@ -261,7 +260,7 @@ def _close_up(
     here = Window((0, 0, width, height), window.rows, window.cols)
     inset.show(rgb, here)
     # only what belongs to this end
-    one = [Fit(GapEnds(f.ends.points[[side]], f.ends.tangents[[side]]), (f.used[side],), f.colour) for f in fits]
+    one = [Fit(GapEnds(f.ends.points[[side]], f.ends.tangents[[side]]), (f.used[side],)) for f in fits]
     _draw_ends(inset, here, one, px, 2.0)
     inset.scale_bar(12, height - 12, 10 / px * here.zoom, "10 mm")
     inset.text(width - 10, 20, f"end {side + 1}", anchor="rs", halo=True)

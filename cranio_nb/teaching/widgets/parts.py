@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
 from ...drawing.figures import colour_scale
-from ...drawing.palette import GREY, SKY
+from ...drawing.palette import COUNTS, GREY
 from ...drawing.pixels import RGB, Window
 from ...drawing.shading import view_axes
 from ...mesh import Mesh
@@ -117,7 +117,7 @@ def hu_chart(canvas: Canvas, box: tuple[float, float, float, float], histogram: 
     edges, counts = histogram
     chart = Chart(box, (edges[0], edges[-1]), (0.8, max(10.0, 1.5 * counts.max())), log=True)
     chart.frame(canvas, "voxels", "HU")
-    chart.bars(canvas, edges, np.maximum(counts, 0.8), SKY)
+    chart.bars(canvas, edges, np.maximum(counts, 0.8), COUNTS)
     return chart
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...drawing.canvas import Canvas
-from ...drawing.palette import BLACK, BLUE, BONE, ORANGE, PATCH, SKULL, SKY, TRUTH, rgb_shares
+from ...drawing.palette import BLACK, BONE, MEASURE, MIDDLE_GREY, PATCH, SKULL, START, TRUTH, rgb_shares
 from ...drawing.pixels import Window, plain, tinted
 from ...drawing.shading import Solid, render, view_axes
 from ...evaluation import mesh_distances
@@ -121,14 +121,14 @@ def _from_outside(made: you.Filling, towards: NDArray[np.float64]) -> Canvas:
     corner = put_view(canvas, rgb, px, towards, (0, 30, LEFT, HEIGHT - 30))
     # the same projection for rim and guides, drawn over the surfaces
     rim, guides = ((points @ right_down - low) / px + corner for points in (made.outer_rim.points, made.guides))
-    canvas.line(np.concatenate([rim, rim[:1]]), BLUE, width=2.5)
-    canvas.dots(guides, ORANGE, radius=5, edge=BLACK)
+    canvas.line(np.concatenate([rim, rim[:1]]), MEASURE, width=2.5)
+    canvas.dots(guides, START, radius=5, edge=BLACK)
     canvas.legend(
         6,
         6,
         [
-            (ORANGE, "dot", "guiding point"),
-            (BLUE, "line", "rim"),
+            (START, "dot", "guiding point"),
+            (MEASURE, "line", "rim"),
             (PATCH, "area", "fill"),
             (TRUTH, "area", "missed bone"),
         ],
@@ -257,14 +257,14 @@ def _mirrored_slice(bone: Volume, window: Window, mirror: SymmetryPlane, plane: 
     mask = bone.voxels[plane]
     image = bone.at_index(_over(mask.shape, _mirrored_index(bone, mirror, plane)), outside=False)
     canvas = Canvas(_HALF, HEIGHT)
-    canvas.show(tinted(tinted(tinted(plain(mask.shape), image, SKY), mask, ORANGE), mask & image, BONE), window)
+    canvas.show(tinted(tinted(tinted(plain(mask.shape), image, PATCH), mask, BONE), mask & image, MIDDLE_GREY), window)
     # the plane, where the side changes along a row
     side = _over(mask.shape, mirror.distance(bone.to_world(_corners(plane)))) > 0
     rows = np.flatnonzero(side.any(axis=1) & ~side.all(axis=1))
     if len(rows):
         canvas.line(window.px(np.column_stack([rows, side[rows].argmax(axis=1) - 0.5])), BLACK, width=1.5, dash=(8, 5))
     annotate_slice(canvas, window, bone, plane)
-    entries = [(BONE, "area", "both"), (ORANGE, "area", "bone"), (SKY, "area", "mirror")]
+    entries = [(MIDDLE_GREY, "area", "both"), (BONE, "area", "bone"), (PATCH, "area", "mirror")]
     canvas.legend(_HALF / 2 - 46, HEIGHT / 2 - 40, [*entries, (BLACK, "dash", "plane")])  # within the ring of bone
     return canvas
 

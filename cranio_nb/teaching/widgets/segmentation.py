@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ...drawing.canvas import Canvas
-from ...drawing.palette import BONE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, YELLOW
+from ...drawing.palette import BLACK, BONE, GREEN, ORANGE, PURPLE, SKY, VERMILLION, YELLOW
 from ...drawing.pixels import RGB, Window, tinted, windowed
 from ...stages import segmentation as stage
 from ...volume import Volume
@@ -87,9 +87,9 @@ def _view(
 def _draw_threshold(canvas: Canvas, histogram: Histogram, threshold_hu: float) -> None:
     """The histogram of the CT with the threshold."""
     chart = hu_chart(canvas, (RIGHT[0], 20, RIGHT[2], 330), histogram)
-    chart.upright(canvas, threshold_hu, VERMILLION, width=3)
+    chart.upright(canvas, threshold_hu, BLACK, width=3)
     (x, y), *_ = chart.px([[threshold_hu, chart.y[1]]])
-    canvas.text(x + 6, y + 12, "bone", size=12, colour=VERMILLION, anchor="ls")
+    canvas.text(x + 6, y + 12, "bone", size=12, anchor="ls")
 
 
 def _bone_picture(hu: NDArray, raw: NDArray[np.bool_], bone: NDArray[np.bool_], labels: NDArray | None) -> RGB:

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...drawing.canvas import Canvas
 from ...drawing.canvas_axes import Chart
-from ...drawing.palette import BLUE, GREEN, PATCH, SKY, VERMILLION, rgb_shares
+from ...drawing.palette import BLACK, BLUE, COUNTS, MEASURE, PATCH, rgb_shares
 from ...drawing.pixels import RGB
 from ...drawing.shading import Solid, render
 from ...mesh import Mesh
@@ -79,14 +79,14 @@ def _draw_deviation(canvas: Canvas, moved: NDArray[np.float64], wall: float, cor
     counts, edges = np.histogram(moved, 60, (0, corner * 1.05))
     chart = Chart((RIGHT[0], 20, RIGHT[2], 350), (0, corner * 1.05), (0.8, max(10.0, 1.5 * counts.max())), log=True)
     chart.frame(canvas, "vertices", "moved from marching cubes (mm)")
-    chart.bars(canvas, edges, np.maximum(counts, 0.8), SKY)
+    chart.bars(canvas, edges, np.maximum(counts, 0.8), COUNTS)
     chart.upright(canvas, moved.mean(), BLUE, width=2.5)
-    chart.upright(canvas, wall, GREEN, dash=(6, 4))
-    chart.upright(canvas, corner, VERMILLION, dash=(6, 4))
+    chart.upright(canvas, wall, MEASURE, dash=(6, 4))
+    chart.upright(canvas, corner, BLACK, dash=(6, 4))
     legend = [
         (BLUE, "line", f"mean {moved.mean():.2f} mm"),
-        (GREEN, "dash", f"half a voxel's side, {wall:.2f} mm"),
-        (VERMILLION, "dash", f"half its diagonal, {corner:.2f} mm"),
+        (MEASURE, "dash", f"half a voxel's side, {wall:.2f} mm"),
+        (BLACK, "dash", f"half its diagonal, {corner:.2f} mm"),
     ]
     canvas.legend(RIGHT[0] + 6, 390, legend)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from ....drawing.canvas import Canvas
 from ....drawing.canvas_axes import Chart
-from ....drawing.palette import BLACK, BONE, ORANGE, PROSTHESIS, SKY, WHITE
+from ....drawing.palette import BLACK, BONE, MEASURE, PATCH, PROSTHESIS, START, WHITE
 from ....methods.dnurbs import method as dnurbs
 from ....methods.dnurbs import sheet_motion
 from ....methods.dnurbs.sheet import Sheet, Springs, settle
@@ -171,10 +171,10 @@ def _draw_net(canvas: Canvas, way: Way, one: Sheet, axes: Array) -> None:
     along = np.tile(np.linspace(0, n, fine), len(u)), np.repeat(u, fine)
     lines = one.at(*(np.concatenate(ways) for ways in zip(across, along, strict=True)))
     for line in lines.reshape(-1, fine, 3):
-        inset.line(place(line), SKY, width=1.5)
+        inset.line(place(line), PATCH, width=1.5)
     for points in (*one.control, *one.control.swapaxes(0, 1)):
-        inset.line(place(points), ORANGE, width=1)
-    inset.dots(place(one.control.reshape(-1, 3)), ORANGE, radius=3, edge=BLACK)
+        inset.line(place(points), START, width=1)
+    inset.dots(place(one.control.reshape(-1, 3)), START, radius=3, edge=BLACK)
     inset.sides((0, 0, _SIDE, _TOP), axes[0], -axes[1])
     canvas.inlay(inset, 0, 0)
 
@@ -193,8 +193,8 @@ def _draw_cut(canvas: Canvas, way: Way, one: Sheet) -> None:
     canvas.dots(cut.px(points[:, [0, 2]]), BONE, radius=3.5, edge=BLACK)
     u = np.linspace(0, one.spans[1], 80)
     canvas.line(cut.px(one.at(np.full(80, middle), u)[:, [0, 2]]), PROSTHESIS, width=2.5)
-    canvas.line(cut.px(control[:, [0, 2]]), ORANGE, width=1, dash=(5, 4))
-    canvas.dots(cut.px(control[:, [0, 2]]), ORANGE, radius=3.5, edge=BLACK)
+    canvas.line(cut.px(control[:, [0, 2]]), START, width=1, dash=(5, 4))
+    canvas.dots(cut.px(control[:, [0, 2]]), START, radius=3.5, edge=BLACK)
 
 
 def _draw_energy(canvas: Canvas, way: Way, step: int) -> None:
@@ -203,7 +203,7 @@ def _draw_energy(canvas: Canvas, way: Way, step: int) -> None:
     limits = (energy.min() / 1.3, energy.max() * 1.5)
     curve = Chart((0, _TOP, WIDTH, HEIGHT - _TOP), (0, len(energy)), limits, log=True)
     curve.frame(canvas, "energy: bending, springs and motion (mm\N{SUPERSCRIPT FOUR})", "step")
-    entries = [(ORANGE, "dot", "control net"), (SKY, "line", "sheet of the net"), (PROSTHESIS, "line", "sheet, cut")]
+    entries = [(START, "dot", "control net"), (PATCH, "line", "sheet of the net"), (PROSTHESIS, "line", "sheet, cut")]
     canvas.legend(WIDTH - 170, _TOP + 30, [*entries, (BONE, "dot", "bone")])
-    canvas.line(curve.px(np.column_stack([np.arange(len(energy)), energy])), SKY, width=2)
+    canvas.line(curve.px(np.column_stack([np.arange(len(energy)), energy])), MEASURE, width=2)
     canvas.dots(curve.px([[step, energy[step]]]), WHITE, radius=5, edge=BLACK)
