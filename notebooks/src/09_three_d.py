@@ -414,7 +414,7 @@ out, inn, _ = paper_tables.PAPER_DISTANCES.values()
 print(f"paper        {out.mean:11.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}")
 
 # %% [markdown]
-# One slice of the large hole, with the patch of each: light blue where it fills what is missing, purple where it leaves
+# One slice of the large hole, with the patch of each: light blue where it fills what is missing, pink where it leaves
 # bone missing, dark blue where no bone is missing.
 
 # %% tags=["nbval-check-output"]
@@ -425,7 +425,7 @@ for ax, (name, one) in zip(panels, over.items(), strict=True):
     patch = one.patch.voxels[at]
     pictures.show_errors(ax, patch, lost, skull.voxels[at], px=px, title=name)
 pictures.key(fig)
-alt = "One slice, three methods: agreed light blue, missed bone purple, too much dark blue."
+alt = "One slice, three methods: agreed light blue, missed bone pink, too much dark blue."
 pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
 
 # %% [markdown]

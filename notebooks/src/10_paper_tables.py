@@ -285,7 +285,7 @@ for wide_mm, high_mm in ((0.45, 0.45), (0.9, 2.5), (0.45, 2.5)):
 # All ten, in the paper's order and with its letters (a), (b), ..., drawn by `paper_figures` from the designs above,
 # with the paper's preset where the paper shows its own method. One colour has one meaning throughout: sand is bone,
 # light blue the patch, dark blue the outer side and the finished prosthesis, orange-red the inner side, green the
-# tangents, purple the truth. (A skull in space is ivory, and distances have a scale of their own.) What a frame holds
+# tangents, pink the truth. (A skull in space is ivory, and distances have a scale of their own.) What a frame holds
 # is shown larger beside it or below.
 #
 # ## Figures 1 to 3: one slice
