@@ -105,7 +105,7 @@ print(f"volume: voxels {voxels_cm3:.2f} cm3, raw {raw.volume / 1000:.2f} cm3")
 #
 # Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half a
 # voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface`
-# finds the smoothest surface within these bounds and keeps the volume.
+# goes towards the smoothest surface within these bounds and keeps the volume.
 
 # %% tags=["nbval-check-output"]
 moved = surface_reconstruction.measure_deviation(raw, smooth)
@@ -116,9 +116,9 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 
 # %% [markdown]
 # **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
-# leave the bound by taking very many? How far will those vertices have moved that are stopped by it? (The bars beside
+# leave the bound by taking all that the panel has? How far will those vertices have moved that are stopped by it? (The bars beside
 # the mesh count vertices by the way they moved; their scale is logarithmic, so that a few can be seen beside many.) (No
-# sliders? Use `panel.set(steps=200)` in a new cell.)
+# sliders? Use `panel.set(steps=48)` in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.surface(patch)
@@ -143,8 +143,8 @@ for steps in (10, 24):
 # <summary>Answer</summary>
 #
 # About ten steps bring most of it: 83 % of what two hundred bring, and the default 24 bring 94 %. After that the
-# vertices still creep (0.51 to 0.61 mm on average), with little gain. (0 steps already put the vertices
-# between the voxels by distance; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
+# vertices still creep (0.51 to 0.61 mm on average), with little gain. (0 steps already put each vertex
+# where a blend of the distances to the voxels inside and outside is level; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
 # clipped to its box of half a voxel in every step.
 #
 # What would go further stops at a wall of the box. Most walls that matter here are half a plane away: hence the pile
