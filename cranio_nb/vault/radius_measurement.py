@@ -28,7 +28,7 @@ _AROUND_MM = 20.0  # of bone beside the rim that gives the usual thickness
 _FLAT_MM = 1e-3  # across the line of sight: an opening of less is a point
 _ROUGH_MM = 1.0  # of voxels that would tell a surface as badly as a scan's blur and the bone's bumps do on any grid
 _LEAST_RAYS = 12  # into a hole, and to bone beside it: some 2 mm across
-_KEPT = 4  # maps of the newest openings, up to some MB each
+_KEPT = 12  # maps of the newest openings, up to some MB each: a few heads at a few thresholds
 _maps: dict[tuple[bytes, ...], RadiusMap] = {}  # by what they were measured in, the newest last
 
 

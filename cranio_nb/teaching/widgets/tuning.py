@@ -122,7 +122,7 @@ def tuner(scan: Volume, truth: Volume) -> Tuner:
     if scan.voxels.dtype != bool:
         assert THRESHOLD.default is not None
         label = "threshold: least HU of bone"
-        controls = (Slider(THRESHOLD_HU, label, *THRESHOLD.span, THRESHOLD.default, 25, unit="HU"), *controls)
+        controls = (Slider(THRESHOLD_HU, label, *THRESHOLD.span, float(THRESHOLD.default), 25, unit="HU"), *controls)
 
     def draw(**values: Any) -> View:
         now = made(values.get(THRESHOLD_HU), *(value for name, value in values.items() if name != THRESHOLD_HU))

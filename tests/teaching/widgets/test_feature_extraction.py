@@ -62,7 +62,7 @@ def test_the_line_drawn_is_the_line_fitted_through_the_mean_of_the_points():
     points = np.column_stack([np.full(31, 20.0), np.arange(10.0, 41)])
     ends = GapEnds(np.array([[30.0, 50.0]]), np.array([[0.0, 1.0]]))
     canvas = Canvas(100, 60)
-    fit = panel_module.Fit(ends, (points,), "#FFFFFF")
+    fit = panel_module.Fit(ends, (points,))
     panel_module._draw_ends(canvas, Window((0, 0, 100, 60), (0, 60), (0, 100)), [fit], 1.0, 0.1)
     black = (canvas.array() == rgb_of(BLACK)).all(axis=-1)
     rows, cols = np.nonzero(black[:, :42])
