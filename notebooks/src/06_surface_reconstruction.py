@@ -144,7 +144,7 @@ for steps in (10, 24):
 #
 # About ten steps bring most of it: 83 % of what two hundred bring, and the default 24 bring 94 %. After that the
 # vertices still creep (0.51 to 0.61 mm on average), with little gain. (0 steps already put each vertex
-# where a blend of the distances to the voxels inside and outside is level; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
+# where the distance to the patch's edge, signed and smoothed, is zero; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
 # clipped to its box of half a voxel in every step.
 #
 # What would go further stops at a wall of the box. Most walls that matter here are half a plane away: hence the pile
