@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import copy
 import operator
+import re
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -120,7 +121,7 @@ def _answer(answer: Callable[..., Any], given: tuple[Any, ...]) -> Any:
     except (Exception, SystemExit) as error:
         if type(error) is NotImplementedError:  # and none of its kinds, which say something else
             raise _NoAnswerError(STUB) from None
-        words = f"The function stopped with {type(error).__name__}: {_first_line(error)}"
+        words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
         raise _NoAnswerError(_STOPPED.get(type(error), words)) from None
 
 
@@ -161,6 +162,15 @@ def _same(given: Any, case: Any) -> bool:
     if isinstance(case, np.ndarray):
         return given.shape == case.shape and np.array_equal(given, case)
     return bool(given == case)
+
+
+def _about_shapes(error: BaseException) -> str:
+    """What is said besides where one number for each row meets a table as if it were a row of it."""
+    shapes = sorted(re.findall(r"\((\d+),(\d*)\)", str(error)), key=lambda shape: shape[1] == "")
+    match shapes if isinstance(error, ValueError) and "broadcast" in str(error) else ():
+        case [(rows, columns), (n, "")] if columns and n == rows:
+            return f" - {n} numbers for {n} rows: keep it a column, as [:, [i]], [:, None] or keepdims=True do."
+    return ""
 
 
 def _first_line(error: BaseException) -> str:

@@ -104,8 +104,8 @@ print(f"volume: voxels {voxels_cm3:.2f} cm3, raw {raw.volume / 1000:.2f} cm3")
 # ## 2. How far may it move?
 #
 # Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half a
-# voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface`
-# finds the smoothest surface within these bounds and keeps the volume.
+# voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface` goes
+# towards the smoothest surface within these bounds and keeps the volume.
 
 # %% tags=["nbval-check-output"]
 moved = surface_reconstruction.measure_deviation(raw, smooth)
@@ -116,9 +116,9 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 
 # %% [markdown]
 # **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
-# leave the bound by taking very many? How far will those vertices have moved that are stopped by it? (The bars beside
-# the mesh count vertices by the way they moved; their scale is logarithmic, so that a few can be seen beside many.) (No
-# sliders? Use `panel.set(steps=200)` in a new cell.)
+# leave the bound by taking all that the panel has? How far will those vertices have moved that are stopped by it? (The
+# bars beside the mesh count vertices by the way they moved; their scale is logarithmic, so that a few can be seen
+# beside many.) (No sliders? Use `panel.set(steps=48)` in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.surface(patch)
@@ -143,9 +143,9 @@ for steps in (10, 24):
 # <summary>Answer</summary>
 #
 # About ten steps bring most of it: 83 % of what two hundred bring, and the default 24 bring 94 %. After that the
-# vertices still creep (0.51 to 0.61 mm on average), with little gain. (0 steps already put the vertices
-# between the voxels by distance; the panel's 0 is marching cubes itself.) You cannot leave the bound: each vertex is
-# clipped to its box of half a voxel in every step.
+# vertices still creep (0.51 to 0.61 mm on average), with little gain. (0 steps already put each vertex where the
+# distance to the patch's edge, signed and smoothed, is zero; the panel's 0 is marching cubes itself.) You cannot leave
+# the bound: each vertex is clipped to its box of half a voxel in every step.
 #
 # What would go further stops at a wall of the box. Most walls that matter here are half a plane away: hence the pile
 # near 1.25 mm, and a little beyond it, as along the wall a vertex may still move. Only a vertex that is

@@ -114,14 +114,14 @@ deepest = against_truth.measure_against(sheet, true, bone).distances["outer"].ma
 print(f"this hole: the hull lies {deepest:.1f} mm from the true outer side at most")
 
 # %% [markdown]
-# So the same hull that fails across our hole does for a burr hole, on each of three heads. And it lies less deep than
-# the sphere foretells: the side of a head is flatter than a sphere of 75 mm, and the rim of the hole is not plane.
+# So the same hull that fails across our hole will do for a burr hole, on each of three heads. And it lies less deep
+# than the sphere foretells: the side of a head is flatter than a sphere of 75 mm, and the rim of the hole is not plane.
 #
 # ## 2. The mirror
 #
 # The plane that maps the skull onto itself is found from the outer surface: two angles and an offset, such that the
 # mirrored points lie on the surface again. The **residual** is how far they still lie off; no plane can do better, so
-# it says how asymmetric this head is.
+# it says how far the shape differs from its mirror image. What it cannot say comes below.
 
 # %% tags=["nbval-check-output"]
 bent = cn.design(bone, openings, method="reflection")  # its image is bent to the rim
@@ -228,11 +228,12 @@ _ = film.set(n=12)
 # <details>
 # <summary>Answer</summary>
 #
-# By next to nothing: 2.53 mm on average with 24 points, 2.54 mm with 12, 2.62 mm with 3. None of the numbers printed
-# brings the mean below 2.53 mm or above 2.78 mm. The *largest* distance is another matter: 8.25 mm with 4 points, 6.28
-# mm with 10, and 5.13 to 5.22 mm with 3, 6, 12 and 24. Where the shortest way between two points leaves the rim, the
-# fill starts from a wrong place, and more points do not always prevent that. The points only say where the rim is. What
-# is wrong is not the rim but what is *not asked*: that the fill leaves the rim in the direction of the bone.
+# By next to nothing: 2.53 mm on average with 24 points, 2.54 mm with 12, 2.62 mm with 3. Three are as good as 12, then.
+# None of the numbers printed brings the mean below 2.53 mm or above 2.78 mm. The *largest* distance is another matter:
+# 8.25 mm with 4 points, 6.28 mm with 10, and 5.13 to 5.22 mm with 3, 6, 12 and 24. Where the shortest way between two
+# points leaves the rim, the fill starts from a wrong place, and more points do not always prevent that. The points only
+# say where the rim is. What is wrong is not the rim but what is *not asked*: that the fill leaves the rim in the
+# direction of the bone.
 #
 # </details>
 #
@@ -243,15 +244,18 @@ _ = film.set(n=12)
 flat = cn.design(bone, openings, method="you")
 columns = {"the paper's You": paper_tables.PAPER_DISTANCES["You et al."]}
 columns["here"] = against_truth.table3(flat, true, bone)["outer"]
+in_mm = against_truth.side_distances(flat, true)["outer"]
 for name, row in columns.items():
     print(f"{name:15}: mean {row.mean:.2f} voxels, max {row.max:.2f}", end="")
     print(f": ratio {row.mean / row.max:.2f}")
-print(f"here in mm: max {columns['here'].max * px:.1f}, a voxel being {px:.1f} mm wide")
+size = "{2:.1f} mm wide and {0:.1f} mm high".format(*bone.spacing)
+print(f"here in mm: max {in_mm.max():.2f}; a voxel is {size}")
 
 # %% [markdown]
 # Nearly the same ratio, a half. So the paper's largest distance of 6.06 voxels may well be the height of the cap that
-# was missing, and the mean is what geometry makes of it. (A voxel is 0.9 mm here. The panel above measures along rays
-# from inside the head, and reaches 5.14 mm; Table 3 takes the nearest point, so its 4.82 voxels, 4.3 mm, are fewer.)
+# was missing, and the mean is what geometry makes of it. (Its 4.82 voxels here are 5.10 mm: the way to the true surface
+# leads a little upwards, too, and a voxel is 0.9 mm wide but 2.5 mm high. The panel above measures the film itself,
+# before it is made of voxels: 5.14 mm at most. That its mean of 2.54 mm equals the table's 2.54 voxels is chance.)
 #
 # ## 4. Side by side
 #
@@ -272,7 +276,7 @@ print(f"paper, You et al. {you.mean:8.2f} {you.max:5.2f}")
 print(f"paper, its method {out.mean:8.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}")
 
 # %% [markdown]
-# One slice of the hole, with the patch of each: light blue where it fills what is missing, purple where it leaves bone
+# One slice of the hole, with the patch of each: light blue where it fills what is missing, pink where it leaves bone
 # missing, dark blue where no bone is missing.
 
 # %% tags=["nbval-check-output"]
@@ -283,7 +287,7 @@ for ax, (name, made) in zip(panels, rivals.items(), strict=True):
     patch = made.patch.voxels[at]
     pictures.show_errors(ax, patch, lost, bone.voxels[at], px=px, title=name)
 pictures.key(fig)
-alt = "One slice, four methods: agreed light blue, missed bone purple, too much dark blue."
+alt = "One slice, four methods: agreed light blue, missed bone pink, too much dark blue."
 pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone are missing")
 
 # %% [markdown]

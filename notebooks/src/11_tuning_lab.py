@@ -47,9 +47,9 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # (lesson 07 says how to name the two files) the first head is yours and the other two stay synthetic. The numbers in
 # the text are those of `"tiny"`.
 #
-# To be quick, the designs of sections 2, 3 and 5 cross the hole in two directions instead of six, with 21 snaxels
-# instead of 41. A `k` is a length per index *squared*: with N = 20 steps it has to be four times that of N = 40 for the
-# same rise k N^2 / 8 (lesson 04).
+# To be quick, the trials of section 1, the designs of section 2 and the four pairs of section 5 cross the hole in two
+# directions instead of six, with 21 snaxels instead of 41. A `k` is a length per index *squared*: with N = 20 steps it
+# has to be four times that of N = 40 for the same rise k N^2 / 8 (lesson 04).
 
 # %%
 case = classroom.load("tiny", needs_truth=True)
@@ -65,8 +65,9 @@ quick = {"directions": 2, "n_snaxels": 21}  # see above
 # each of the six what the Dice coefficient (DSC) does if you halve the value, or double it. Which of them would you not
 # have to tune at all?
 #
-# Below "more", `set k by hand` makes the slider of `k` count. In code: `panel.set(tension=2)`. The small circle in the
-# map is where the distance is largest.
+# In code: `panel.set(tension=2)`. By default `k` has no value to halve; its slider counts once `set k by hand`, below
+# "more", is on: `panel.set(own=True, pressure_mm=0.02)`, with a value about right here. The small circle in the map is
+# where the distance is largest.
 
 # %% tags=["nbval-check-output"]
 panel = widgets.tuner(case.ct, case.truth)
@@ -74,22 +75,38 @@ panel
 
 # %% tags=["nbval-check-output"]
 start = dict(panel.values)
-some = {"rigidity": 2}, {"skip_mm": 3}, {"reach_mm": 5}, quick | {"tension": 2}
-for change in ({}, *some):
-    print(f"{change or 'default'!s:52} {panel.set(**start | change).view.line[:24]}")
+trials = {"pressure_mm": (0.04, 0.16), "tension": (0.5, 2), "rigidity": (0.5, 2)}
+trials |= {"skip_mm": (1, 3), "reach_mm": (5, 20)}
+rough = quick | {"smooth": False}  # the voxels are the same
+print("quick default:", panel.set(**start | rough).view.line[:9])
+for name, pair in trials.items():
+    print(f"{name:12}", end="")
+    for value in pair:
+        change = rough | {name: value, "own": name == "pressure_mm"}
+        print(f" {value:6g}: {panel.set(**start | change).view.line[:9]}", end="")
+    print()
 _ = panel.set(**start)
 
 # %% [markdown]
-# The last line is the quick setting of the sections below, with twice the tension. `panel.parameters` is what
-# `cn.design` and `cranio-nb design --params` take, and the button under "more" writes them to a file. What a panel
-# cannot say: is a change in the second decimal much? That depends on how far heads differ.
+# <details>
+# <summary>Answer</summary>
+#
+# From 0.941 for the quick default, `k` and the tension cost most, and in both directions; 0.04 and 0.16 are half and
+# twice of a `k` of 0.08, as 21 snaxels want it. Half a reach costs more than twice of it, and a skip of 1 or 3 mm
+# little. (The slider of the skip goes in steps of half a mm.) The rigidity changes next to nothing: that one you would
+# not have to tune. The threshold is tried in section 2: half of it, 200 HU, costs 0.046.
+#
+# </details>
+#
+# `panel.parameters` is what `cn.design` and `cranio-nb design --params` take, and the button under "more" writes them
+# to a file. What a panel cannot say: is a change in the second decimal much? That depends on how far heads differ.
 #
 # ## 2. One at a time, on three heads
 #
 # Each setting on each head, by Dice (more is better) and by the mean distance of the two surfaces (less is better). In
 # the picture a line is the mean of the three heads, and the grey band one standard deviation to each side. `auto` is
 # the `k` that follows from the ends; it differs from slice to slice, so it has no place among the others and comes
-# first.
+# first. (0.248 is 4 x 0.062, the paper's figure for N = 40.)
 
 # %%
 sweeps = {
@@ -122,9 +139,10 @@ tried = {
 }
 
 # %% [markdown]
-# From each score the one of the default *on the same head* is taken before mean and spread (the standard deviation over
-# heads): how hard a head is then drops out (exercise 11.1). The last column was measured beforehand: Dice on the finer
-# head of `"class"`, with six directions, 41 snaxels and a quarter of each `k`, where the default has 0.969.
+# From each score the one of the default *on the same head* is taken away before mean and spread (the standard deviation
+# over heads): how hard a head is then drops out (exercise 11.1). The error of such a mean is the spread over the root
+# of the number of heads. The last column was measured beforehand: Dice on the finer head of `"class"`, with six
+# directions, 41 snaxels and a quarter of each `k`, where the default has 0.969.
 
 # %%
 class_head = {
@@ -141,11 +159,12 @@ known = {(n, v): d for n in sweeps for v, d in zip(sweeps[n], class_head[n], str
 dice, off = usual.T
 print(f"default: Dice {dice.mean():.3f}, from {dice.min():.3f} to {dice.max():.3f}; ", end="")
 print(f"{off.mean():.2f} mm off, from {off.min():.2f} to {off.max():.2f}")
-print("                     Dice: change   spread | mm off: change | class head, Dice")
+print("                Dice: change  spread  change/error | mm off: change | class head")
 for (name, value), seen in tried.items():
     gain = seen - usual
-    cells = f"{gain[:, 0].mean():+14.3f} {gain[:, 0].std(ddof=1):8.3f}"
-    print(f"{name:12} {value:7g} {cells} {gain[:, 1].mean():+15.2f} {known[name, value]:18.3f}")
+    mean, spread = gain[:, 0].mean(), gain[:, 0].std(ddof=1)
+    cells = f"{mean:+8.3f} {spread:7.3f} {mean / (spread / np.sqrt(3)):13.1f}"
+    print(f"{name:12} {value:7g} {cells} {gain[:, 1].mean():+16.2f} {known[name, value]:12.3f}")
 
 # %% tags=["nbval-check-output"]
 shown = []
@@ -178,11 +197,11 @@ print(f"correlation of both: {np.corrcoef(means, there)[0, 1]:.2f}")
 # `k` and the tension decide, and section 3 shows that they are one thing: a `k` of 0 costs 0.239 of Dice and one of
 # 0.248 costs 0.476; half the tension costs 0.127 and twice of it 0.129. The rigidity does nothing, not even at 8. Skip
 # and reach are what the tangents are made of (lesson 03): too short costs 0.090 and 0.070, too long only 0.027 and
-# 0.005. The threshold costs on both sides. The distances say the same in mm.
+# 0.005. Too low a threshold costs 0.046. The distances say the same in mm.
 #
-# Heads differ by less than that here, from 0.936 to 0.942. Still, the spread of a gain is up to 0.024, and a change of
-# 0.027 with a spread of 0.022 (a skip of 8 mm), or of 0.003 with one of 0.010 (`k` at 0.08), says nothing on three
-# heads. Whoever wants to know needs more heads (section 5), and better ones with real rims.
+# Heads differ by less than that here, from 0.936 to 0.942. Still, three are few: a change of less than three times its
+# error says nothing. That goes for a skip of 8 mm (2.2 times), for a threshold of 700 HU (2.7 times), for a reach of 25
+# mm and for `k` at 0.08. Whoever wants to know needs more heads (section 5), and better ones with real rims.
 #
 # The finer head of the last column agrees: 11 of 12 settings lie on the same side of the default, and the correlation
 # is 0.97. The odd one out is `k` at 0.08: as good as the automatic one here, and clearly worse there.
@@ -351,8 +370,9 @@ folder = classroom.scratch_folder()
 
 def tell(tally):
     """One line that is written over: how far the study is, and how long it still takes."""
+    left = "?" if np.isnan(tally.seconds_left) else f"{tally.seconds_left:.0f}"
     done = f"{tally.before + tally.done} of {tally.total} runs, {tally.failed} failed"
-    print(f"\r{done}, {tally.seconds_left:3.0f} s left", end="")
+    print(f"\r{done}, {left:>3} s left", end="")
 
 
 # %%
@@ -426,16 +446,18 @@ print(f"the default {top.usual.mean:.3f}")
 # <details>
 # <summary>Answer</summary>
 #
-# By 0.001, and the heads that were left out take even that back: with the setting that the others chose they have
-# 0.936 on average, less than the default. The search has found nothing, and the honest number says so. The more
-# settings and the fewer heads, the more the best one tends to look better than it is.
+# By 0.001, and the heads that were left out take even that back: with the setting that the others chose they have 0.936
+# on average, less than the default. (The default crosses the hole in six directions here, with 41 snaxels, the pairs in
+# two; in section 2 it is as quick as they are, and has 0.940.) The search has found nothing, and the honest number says
+# so. The more settings and the fewer heads, the more the best one tends to look better than it is.
 #
 # </details>
 #
 # ## 6. A real skull, and the prosthesis in space
 #
 # Here the first head again, with six directions and with your own method: a real one if you have named a scan and its
-# truth (`CRANIO_NB_SCAN` and `CRANIO_NB_TRUTH`), the synthetic one if not.
+# truth (as in lesson 07, or by the environment variables `CRANIO_NB_SCAN` and `CRANIO_NB_TRUTH`), the synthetic one if
+# not.
 
 # %% tags=["nbval-check-output"]
 truths, centre = cn.evaluation.against_truth, holes[0][0].head_centre
@@ -508,7 +530,7 @@ ax.axhline(0, color=pictures.BLACK, lw=0.6)
 alt = (
     "Gains in Dice over the default: about 0 for the middle k and rigidity, below 0 elsewhere."
 )
-pictures.picture(fig, alt, f"largest loss {m.min():.2f}")
+pictures.picture(fig, alt, f"largest loss {m.min():.2f}; bars: one standard deviation")
 
 # %% [markdown]
 # **Exercise 11.2.** The pressure for a tension. A balloon of n snaxels and `length` mm lies on a circle of `radius` mm.
@@ -571,7 +593,7 @@ check.exercise("11.4", held_out)
 #
 # - Take differences on the same head, give their spread, and count heads, not settings.
 # - The automatic `k` holds for a tension of 1. Otherwise it wants to be w1 times as large; only k / w1 counts.
-# - Of the others skip and reach matter where they are too short, the threshold on both sides, the rigidity not.
+# - Of the others skip and reach matter where they are too short, the threshold where it is low, the rigidity not.
 # - A parameter that does nothing alone may decide together with another: look at pairs.
 # - A best setting is worth what it does on heads that did not choose it.
 #

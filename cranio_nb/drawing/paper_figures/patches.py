@@ -116,9 +116,10 @@ def figure_7(
 
 def _draw_pair(ax: Axes, result: SliceResult, bone: Volume) -> None:
     """Draw both curves of a slice."""
-    styles = (OUTER, "-", "outer balloon"), (INNER, "--", "inner balloon")
-    for curve, (colour, style, name) in zip(result.curves, styles, strict=False):
-        figures.plot_points(ax, curve, bone, color=colour, ls=style, lw=1.8, label=name)
+    # both full: dashed is where a balloon starts (figures 4 and 5)
+    styles = (OUTER, "outer balloon"), (INNER, "inner balloon")
+    for curve, (colour, name) in zip(result.curves, styles, strict=False):
+        figures.plot_points(ax, curve, bone, color=colour, lw=1.8, label=name)
     if len(result.crossings):
         figures.plot_points(
             ax, result.crossings, bone, ls="none", marker="x", ms=9, mew=2.2, color=BLACK, label="they cross"

@@ -17,13 +17,18 @@ def _clouds():
     return [(left, right + np.array([0.0, 0.0, 1.5])), (bump, grid), (grid, left)]
 
 
-def _both_ways(a, b):
-    return np.concatenate([cKDTree(b).query(a)[0], cKDTree(a).query(b)[0]])
+def _ways(a, b, part=0):
+    """Distances to the nearest points each way; with `part` 1 the numbers of these points."""
+    return cKDTree(b).query(a)[part], cKDTree(a).query(b)[part]
+
+
+def _both_ways(a, b, part=0):
+    return np.concatenate(_ways(a, b, part))
 
 
 def _percentiles(a, b):
     """One for each way."""
-    return [np.percentile(cKDTree(other).query(one)[0], 95) for one, other in ((a, b), (b, a))]
+    return [np.percentile(way, 95) for way in _ways(a, b)]
 
 
 def _planes():
@@ -83,9 +88,18 @@ EXERCISES: dict[str, Exercise] = {
                 "95 percent of the largest distance; wanted is the distance that 95 percent of the points keep.",
             ),
             (_both_ways, "These are all distances: take their 95th percentile."),
+            *(
+                (mistake, "query gives distances and numbers of points: [0] are the distances.")
+                for mistake in (
+                    lambda a, b: np.percentile(cKDTree(b).query(a)[1], 95),
+                    lambda a, b: np.percentile(cKDTree(a).query(b)[1], 95),
+                    lambda a, b: np.percentile(_both_ways(a, b, 1), 95),
+                    lambda a, b: max(np.percentile(way, 95) for way in _ways(a, b, 1)),
+                )
+            ),
             (
-                lambda a, b: np.percentile(cKDTree(b).query(a)[1], 95),
-                "query gives distances and numbers of points: [0] are the distances.",
+                lambda a, b: 0.0,
+                "All distances are 0: each set is asked for its own points; tree and query belong to different sets.",
             ),
             (lambda a, b: np.percentile(_both_ways(a, b) ** 2, 95), "These are squares of distances."),
             (lambda a, b: cKDTree(b).query(a)[0].max(), "This is the largest distance, one way only."),

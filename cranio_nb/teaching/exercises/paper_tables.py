@@ -12,13 +12,15 @@ def _records():
         return {"plane": plane, "status": status, "theta0": theta0, "n_iter": n_iter}
 
     slices = [
-        entry(22, "balloon", [14.0, 17.5], [90, 75]),
+        entry(22, "balloon", [14.0, 28.7], [90, 146]),
+        entry(25, "carried", [6.2, 33.4], [0, 0]),
         entry(20, "hull", [0.0, 0.0], [0, 0]),
-        entry(23, "balloon", [21.0, 28.0], [131, 140]),
+        entry(23, "balloon", [21.3, 27.5], [131, 140]),
         entry(21, "balloon", [8.5, 12.0], [44, 61]),
-        entry(24, "balloon", [11.0, 20.5], [102, 88]),
+        entry(24, "balloon", [11.0, 11.6], [102, 57]),
+        entry(19, "skipped", [3.4, 41.5], [30, 35]),
     ]
-    # an answer that ignores key or side is right once at most
+    # an answer that ignores key or side is right once at most; the smallest of the two sides are in different slices
     return [(slices, "theta0", 1), (slices, "n_iter", 1), (slices, "n_iter", 0)]
 
 
@@ -30,8 +32,12 @@ def _values(slices, key, side):
     return [s[key][side] for s in slices if _has(s)]
 
 
+def _extremes(values):
+    return min(values), max(values)
+
+
 def _range(slices, key, side):
-    return min(_values(slices, key, side)), max(_values(slices, key, side))
+    return _extremes(_values(slices, key, side))
 
 
 def _by_plane(slices, key, side):
@@ -53,6 +59,22 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, k, i: (min(x[k][i] for x in s), max(x[k][i] for x in s)),
                 "Slices filled by the hull have no balloon: leave them out.",
             ),
+            *(
+                (
+                    lambda s, k, i, out=out: _extremes([x[k][i] for x in s if x["status"] not in out]),
+                    "Carried and skipped slices have no balloon of their own either: take those whose status says so.",
+                )
+                for out in (("hull",), ("hull", "skipped"), ("hull", "carried"))
+            ),
+            (
+                lambda s, k, i: tuple(pick([x[k] for x in s if _has(x)])[i] for pick in (min, max)),
+                "min and max of pairs compare the outer side first: take s[key][side] before, not after.",
+            ),
+            (
+                lambda s, k, i: tuple(int(value) for value in _range(s, k, i)),
+                "Rounded down: return the values as they are.",
+            ),
+            (lambda s, k, i: np.round(_range(s, k, i)), "Rounded: return the values as they are."),
             (lambda s, k, i: _range(s, k, 1 - i), "Outer is side 0, inner is side 1."),
             (lambda s, k, i: _range(s, k, 0), "This is the outer side whatever `side` says: take s[key][side]."),
             (lambda s, k, i: _range(s, k, 1), "This is the inner side whatever `side` says: take s[key][side]."),
@@ -79,9 +101,12 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, k, i: (np.median(_values(s, k, i)),) * 2,
                 "This is the median; the paper's tables give smallest and largest.",
             ),
-            (
-                lambda s, k, i: _range([dict(x, status="balloon") for x in s if not _has(x)], k, i),
-                'These are the slices without a balloon: status == "balloon".',
+            *(
+                (
+                    lambda s, k, i, of=of: _extremes([x[k][i] for x in s if x["status"] in of]),
+                    'These are the slices without a balloon: status == "balloon".',
+                )
+                for of in (("hull",), ("carried",), ("skipped",), ("hull", "carried", "skipped"))
             ),
             (
                 lambda s, k, i: max(_values(s, k, i)) - min(_values(s, k, i)),

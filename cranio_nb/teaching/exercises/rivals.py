@@ -195,6 +195,16 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, h: h * (3 * a**2 + h**2) / (24 * a**2),
                 "a is the radius of the hole, and its area pi a^2, a quarter of this divisor.",
             ),
+            *(
+                (mistake, "a is the radius already, not the diameter: the area of the hole is pi a^2.")
+                for mistake in (
+                    lambda a, h: 4 * _mean_depth(a, h),
+                    lambda a, h: _mean_depth(a / 2, h),
+                    lambda a, h: _mean_depth(a / 2, h) / 4,
+                    lambda a, h: _mean_depth(2 * a, h),
+                    lambda a, h: 4 * _mean_depth(2 * a, h),
+                )
+            ),
             (lambda a, h: h * (3 * a**2 + h**2) / (12 * a), "2 pi a is the rim of the lid, not its area."),
             (
                 lambda a, h: h * (3 * a**2 + h**2) / (6 * (a**2 + h**2)),
@@ -244,12 +254,21 @@ EXERCISES: dict[str, Exercise] = {
                 "What lies outside the head is in it: stay within the hull of the bone.",
             ),
             (
-                lambda b, i: convex_hull_image(i) & ~convex_hull_image(b) & ~b,
-                "Turned round: the hull of the bone, without that of the inner edge.",
+                lambda b, i: np.zeros_like(b),
+                "The mask is empty: an open ring has no hole to fill, and the hull of the inner edge lies within "
+                "that of the bone.",
             ),
             (lambda b, i: convex_hull_image(b) & ~convex_hull_image(i) | b, "The bone is in it: & ~bone, not | bone."),
             (lambda b, i: convex_hull_image(b) & convex_hull_image(i) & ~b, "This is the inside of the head."),
             (lambda b, i: b, "This is the bone that is there already."),
+            (
+                lambda b, i: convex_hull_image(b) & ~convex_hull_image(b | i) | convex_hull_image(b | i) & ~b,
+                "The brain's place is in it: take the hull of the inner edge away too.",
+            ),
+            (
+                lambda b, i: convex_hull_image(b) & ~convex_hull_image(i) & b,
+                "This is bone that is there already: & ~bone, not & bone.",
+            ),
         ),
         hints=(
             "One hull for the outside, one for the inside.",

@@ -117,7 +117,18 @@ EXERCISES: dict[str, Exercise] = {
                 "These are distances from 0, 0, 0: a position has three numbers.",
             ),
             (lambda i, s: i * np.prod(s), "np.prod is the volume of a voxel: each axis has its own spacing."),
-            (lambda i, s: i * s.max(), "One spacing for all axes: each has its own."),
+            *(
+                (lambda i, s, one=one: i * one(s), "One spacing for all axes: each has its own.")
+                for one in (np.max, np.min, np.median, lambda s: s[1], lambda s: s[2], lambda s: np.cbrt(np.prod(s)))
+            ),
+            *(
+                (
+                    lambda i, s, order=order: i * s[order],
+                    "Spacings are exchanged: they go with (plane, row, col), as they come.",
+                )
+                for order in ([0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1])
+            ),
+            (lambda i, s: i * np.linalg.norm(s), "This is the diagonal of a voxel: each axis has its own spacing."),
             (lambda i, s: i * s**2, "The spacing comes in once: mm = voxels x mm per voxel."),
             (lambda i, s: i + 0.5 * s, "A spacing is mm per voxel: multiply, do not add."),
         ),

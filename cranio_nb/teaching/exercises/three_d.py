@@ -183,6 +183,14 @@ EXERCISES: dict[str, Exercise] = {
                 lambda f, known, order, strength: _bridge(f, known, order, strength ** (2 * order)),
                 "The strength is already the whole factor of the energy: do not raise it to 2 order.",
             ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order, -strength),
+                "The sign of the smoothing is turned: both terms of the energy are added, so strength D^T D is too.",
+            ),
+            (
+                lambda f, known, order, strength: -_bridge(f, known, order, -strength),
+                "The sign of W is turned: both terms of the energy are added, W + strength D^T D.",
+            ),
             (_straight, "A straight bridge: it leaves the rim with a kink and smooths nothing."),
             (
                 lambda f, known, order, strength: np.where(known, f, _bridge(f, known, order, strength)),

@@ -76,8 +76,16 @@ def _on_left_out(scores, chosen):
     return np.mean(scores[np.arange(len(scores)), chosen])
 
 
+def _chosen_by(way, scores):
+    return _on_left_out(scores, np.argmax([way(np.delete(scores, i, 0), 0) for i in range(len(scores))], axis=1))
+
+
+def _all_held_out(scores):
+    return scores[np.arange(len(scores)), _others(scores).argmax(axis=1)]
+
+
 def _held_out(scores):
-    return _on_left_out(scores, _others(scores).argmax(axis=1))
+    return _all_held_out(scores).mean()
 
 
 EXERCISES: dict[str, Exercise] = {
@@ -139,6 +147,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, u: np.array([_gains(s, u).mean(axis=0), np.ptp(_gains(s, u), axis=0)]),
                 "This is the range; the standard deviation is wanted.",
             ),
+            (
+                lambda s, u: np.array([_gains(s, u).mean(axis=0), s.std(0, ddof=1) - s.std(0, ddof=1)[u]]),
+                "This is the difference of two spreads; wanted is the spread of the differences.",
+            ),
             (lambda s, u: _gains(s, u).mean(axis=0), "Only the mean: return mean and spread, two rows."),
             (lambda s, u: _paired(s, u)[::-1], "The mean comes first, then the spread."),
             (lambda s, u: _paired(s, u).T, "A row for the mean and one for the spread: yours are columns."),
@@ -188,6 +200,26 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda d, r, n, w: w * d**2 / (8 * r),
                 "This is the height of the bow, k N^2 / 8 (lesson 04); the k itself is wanted.",
+            ),
+            *(
+                (mistake, "The rigidity is still in it: the tension alone is asked about.")
+                for mistake in (
+                    lambda d, r, n, w: _pressure(d, r, n, w) + (d / (n - 1)) ** 4 / r**3,
+                    lambda d, r, n, w: _pressure(d, r, n, w) + w * (d / (n - 1)) ** 4 / r**3,
+                    lambda d, r, n, w: _pressure(d, r, n, w) - (d / (n - 1)) ** 4 / r**3,
+                )
+            ),
+            (
+                lambda d, r, n, w: _pressure(2 * r * np.sin(d / 2 / r), r, n, w),
+                "This divides the chord from end to end: `length` lies along the balloon, and so do its steps.",
+            ),
+            (
+                lambda d, r, n, w: _pressure(2 * r * np.arcsin(d / 2 / r), r, n, w),
+                "This takes `length` for the chord from end to end: it is the length along the balloon already.",
+            ),
+            (
+                lambda d, r, n, w: w * (2 * r * np.sin(d / (n - 1) / 2 / r)) ** 2 / r,
+                "This takes a step straight, as a chord: here h is the step along the circle, length / (n - 1).",
             ),
             (
                 lambda d, r, n, w: -_pressure(d, r, n, w),
@@ -277,41 +309,32 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s: _on_left_out(s, _others(s).argmin(axis=1)),
                 "The worst setting on the others is chosen: the largest score is the best.",
             ),
-            (
-                lambda s: _on_left_out(s, np.roll(s, 1, axis=0).argmax(axis=1)),
-                "Chosen by one other head, the one before: choose by the mean of all others.",
+            *(
+                (
+                    lambda s, by=by: _on_left_out(s, np.roll(s, by, axis=0).argmax(axis=1)),
+                    f"Chosen by one other head, {which}: choose by the mean of all others.",
+                )
+                for by, which in ((1, "the one before"), (-1, "the next one"))
             ),
-            (
-                lambda s: _on_left_out(s, np.roll(s, -1, axis=0).argmax(axis=1)),
-                "Chosen by one other head, the next one: choose by the mean of all others.",
+            *(
+                (lambda s, way=way: way(_all_held_out(s)), f"This is the {word} of the heads left out, not their mean.")
+                for way, word in ((np.median, "median"), (np.min, "worst"), (np.max, "best"))
             ),
-            (
-                lambda s: np.median(s[np.arange(len(s)), _others(s).argmax(axis=1)]),
-                "This is the median over heads; their mean is wanted.",
-            ),
-            (
-                lambda s: s[np.arange(len(s)), _others(s).argmax(axis=1)].min(),
-                "This is the worst of the heads left out; their mean is wanted.",
-            ),
-            (
-                lambda s: s[np.arange(len(s)), _others(s).argmax(axis=1)].max(),
-                "This is the best of the heads left out; their mean is wanted.",
-            ),
-            (
-                lambda s: s[np.arange(len(s)), _others(s).argmax(axis=1)].sum(),
-                "This is a sum; divide it by the number of heads.",
-            ),
-            (
-                lambda s: s[np.arange(len(s)), _others(s).argmax(axis=1)],
-                "One score for each head left out, and right: return their mean.",
-            ),
+            (lambda s: _all_held_out(s).sum(), "This is a sum; divide it by the number of heads."),
+            (_all_held_out, "One score for each head left out, and right: return their mean."),
             (lambda s: _others(s).argmax(axis=1), "These are the settings chosen: return how they did."),
             (lambda s: s[0, _others(s)[0].argmax()], "Only the first head is left out: each has its turn."),
             (
-                lambda s: _on_left_out(
-                    s, np.array([np.delete(s, i, axis=0).argmax() % s.shape[1] for i in range(len(s))])
-                ),
-                "Chosen by the single best score among the others: choose by their mean.",
+                lambda s: s[:, _others(s).argmax(axis=1)].mean(),
+                "scores[:, best] takes every head with every choice: each head goes with its own, one pair a head.",
+            ),
+            (
+                lambda s: _others(s)[np.arange(len(s)), s.argmax(axis=1)].mean(),
+                "Turned round: chosen by one head and judged on the others.",
+            ),
+            *(
+                (lambda s, way=way: _chosen_by(way, s), f"Chosen by the {word} of the others: choose by their mean.")
+                for way, word in ((np.median, "median"), (np.min, "worst case"), (np.max, "single best score"))
             ),
             (lambda s: _held_out(s.T), "Rows are heads and columns settings: heads are left out."),
         ),

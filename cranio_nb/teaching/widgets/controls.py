@@ -106,6 +106,22 @@ class Slider:
         # tenths have no exact float: rounded, so that they print as they were typed
         return int(nearest) if self.whole else float(round(nearest, 9))
 
+    def check(self, value: float) -> None:
+        """Refuse what no hand on the slider reaches.
+
+        Parameters
+        ----------
+        value : float
+
+        Raises
+        ------
+        InputRefused
+            ``OutOfRange``.
+        """
+        if not (isinstance(value, int | float | np.number) and self.low <= value <= self.high):
+            span = f"{self.low:g} to {self.high:g} {self.unit}".rstrip()
+            raise InputRefused("OutOfRange", f"{self.name} cannot be {value!r}.", f"It takes {span}.")
+
     @property
     def whole(self) -> bool:
         """Whether all its values are whole numbers.
@@ -139,6 +155,22 @@ class Choice:
     expert: bool = False
     unit: ClassVar[str] = ""
 
+    def check(self, value: str) -> None:
+        """Refuse a word that is none of its own.
+
+        Parameters
+        ----------
+        value : str
+
+        Raises
+        ------
+        InputRefused
+            ``UnknownOption``.
+        """
+        if value not in self.stops:
+            known = ", ".join(map(repr, self.stops))
+            raise InputRefused("UnknownOption", f"{self.name} cannot be {value!r}.", f"It takes: {known}.")
+
     def taken(self, value: str) -> str:
         """The word, if it is one of its own.
 
@@ -155,9 +187,7 @@ class Choice:
         InputRefused
             ``UnknownOption``.
         """
-        if value not in self.stops:
-            known = ", ".join(map(repr, self.stops))
-            raise InputRefused("UnknownOption", f"{self.name} cannot be {value!r}.", f"It takes: {known}.")
+        self.check(value)
         return value
 
 
@@ -180,6 +210,14 @@ class Switch:
     expert: bool = False
     unit: ClassVar[str] = ""
     stops: ClassVar[tuple[bool, ...]] = (False, True)
+
+    def check(self, value: Any) -> None:
+        """Refuse nothing: anything is on or off.
+
+        Parameters
+        ----------
+        value : Any
+        """
 
     def taken(self, value: Any) -> bool:
         """On or off.

@@ -127,14 +127,17 @@ def _view(known: DistanceMap, side: str, top_mm: float, limit_mm: float) -> View
     high = max(top_mm, 0.2)
     counts, edges = np.histogram(np.minimum(known.distances, high), 60, (0, high))
     chart = Chart((RIGHT[0], 20, RIGHT[2], 340), (0, high), (0, 1.1 * counts.max()))
-    chart.frame(canvas, "nodes", "distance (mm)")
+    more = f"; last bar: {high:g} or more" if known.distances.max() > high else ""
+    chart.frame(canvas, "nodes", f"distance (mm){more}")
     chart.bars(canvas, edges, counts, COUNTS)
+    legend = [(WHITE, "dot", "largest distance seen")]
     if limit_mm <= high:
         chart.upright(canvas, limit_mm, BLACK, dash=(6, 4))
+        legend.append((BLACK, "dash", f"asked about: {limit_mm:g} mm"))
     # the scale below the histogram, as wide as its axis
     x, _, width, _ = chart.area
     draw_colour_scale(canvas, (x, 420), round(width), top_mm)
-    canvas.legend(x - 8, 470, [(WHITE, "dot", "largest distance seen")])
+    canvas.legend(x - 8, 470, legend)
 
     d = known.distances
     line = f"{side.capitalize()} side: mean {d.mean():.2f} mm, std {d.std():.2f} mm, max {d.max():.2f} mm; "

@@ -6,6 +6,7 @@ In both modes a panel makes the same picture; `live` adds controls in the browse
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -83,7 +84,8 @@ class Panel:
         Parameters
         ----------
         **values
-            By name of the control; a number between two stops of a slider goes to the nearer one, as by hand.
+            By name of the control; a number between two stops of a slider goes to the nearer one, as by hand. What
+            has no effect at this setting is named in the picture's line.
 
         Returns
         -------
@@ -93,14 +95,18 @@ class Panel:
         Raises
         ------
         InputRefused
-            ``UnknownControl``, ``UnknownOption``.
+            ``UnknownControl``, ``UnknownOption``, ``OutOfRange``.
         """
         # refused before anything is moved
-        for name in values:
+        for name, value in values.items():
             if name not in self.controls:
                 known = ", ".join(self.controls)
                 raise InputRefused("UnknownControl", f"This panel has no control {name!r}.", f"It has: {known}.")
+            self.controls[name].check(value)
         self.update(values)
+        idle = [name for name in values if name in self.view.off and self.values[name] != self.controls[name].value]
+        if idle:
+            self.view = replace(self.view, line=f"{self.view.line} No effect at this setting: {', '.join(idle)}.")
         if mode() == "widget":
             self.front.show()
         return self

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from ...drawing.canvas import Canvas, round_length
 from ...drawing.canvas_axes import Chart
 from ...drawing.figures import colour_scale
-from ...drawing.palette import COUNTS, GREY
+from ...drawing.palette import COUNTS, GREY, side_letter
 from ...drawing.pixels import RGB, Window
 from ...drawing.shading import view_axes
 from ...mesh import Mesh
@@ -70,6 +70,21 @@ def annotate_slice(canvas: Canvas, window: Window, grid: Volume, plane: int) -> 
     canvas.scale_bar(x + 14, y + height - 14, mm / px * window.zoom, f"{mm:g} mm")
     canvas.sides(window.box, *grid.edges[[2, 1]])
     canvas.text(x + width - 12, y + height - 14, f"slice {plane}", anchor="rs", halo=True)
+
+
+def name_ends(canvas: Canvas, chart: Chart, right: ArrayLike) -> None:
+    """Write the letters of the patient's sides at both ends of a chart's x axis.
+
+    Parameters
+    ----------
+    canvas : Canvas
+    chart : Chart
+    right : array_like, shape (3,)
+        Where the axis leads in the head, LPS.
+    """
+    x, y, width, height = chart.area
+    for at, way in ((x + 10, -1), (x + width - 10, 1)):
+        canvas.text(at, y + height - 12, side_letter(way * np.asarray(right, float)), size=14, anchor="mm", halo=True)
 
 
 def count_hu(hu: NDArray, n: int = 120) -> Histogram:

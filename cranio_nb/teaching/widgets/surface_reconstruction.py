@@ -85,8 +85,8 @@ def _draw_deviation(canvas: Canvas, moved: NDArray[np.float64], wall: float, cor
     chart.upright(canvas, corner, BLACK, dash=(6, 4))
     legend = [
         (BLUE, "line", f"mean {moved.mean():.2f} mm"),
-        (MEASURE, "dash", f"half a voxel's side, {wall:.2f} mm"),
-        (BLACK, "dash", f"half its diagonal, {corner:.2f} mm"),
+        (MEASURE, "dash", f"half longest side, {wall:.2f} mm"),
+        (BLACK, "dash", f"half diagonal, {corner:.2f} mm"),
     ]
     canvas.legend(RIGHT[0] + 6, 390, legend)
 

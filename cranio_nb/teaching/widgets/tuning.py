@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...drawing.canvas import Canvas
-from ...drawing.palette import BLACK, BLUE, GREY, PALE
+from ...drawing.palette import BLACK, BLUE, GREY, PALE, WHITE
 from ...evaluation import scores
 from ...evaluation.against_truth import SIDES, side_distances, true_prosthesis
 from ...mesh import OUTER
@@ -237,6 +237,7 @@ def _view(now: Measured, first: Measured, values: dict[str, Any]) -> View:
     canvas.text(14, 22, "distance of the outer side from the truth")
     draw_distances(canvas, now[1], _TOP, (0, 30, _MAP, 420))
     draw_colour_scale(canvas, (40, 470), _MAP - 80, _TOP)
+    canvas.legend(32, 506, [(WHITE, "dot", "largest distance seen")])
     _draw_table(canvas, now, first)
     dice, _, hd95, *_ = now[0]
     line = f"DSC {dice:.3f}, HD95 {hd95:.2f} mm, outer side {now[0][4]:.2f} mm and inner side {now[0][5]:.2f} mm off, "

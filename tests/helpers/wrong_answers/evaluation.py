@@ -38,7 +38,23 @@ WRONG = {
             "This is the smaller of two percentiles",
         ),
         ((f"{NEAREST}; return np.percentile(np.concatenate([there, back])**2, 95)"), "These are squares of distances"),
-        ("return np.percentile(spatial.cKDTree(a).query(a)[0], 95)", "The function does not use `b`"),
+        ("return np.percentile(spatial.cKDTree(a).query(a)[0], 95)", "each set is asked for its own points"),
+        (
+            "d = spatial.cKDTree(a).query(a)[0], spatial.cKDTree(b).query(b)[0]; "
+            "return np.percentile(np.concatenate(d), 95)",
+            "each set is asked for its own points",
+        ),
+        (
+            "i = spatial.cKDTree(b).query(a)[1], spatial.cKDTree(a).query(b)[1]; "
+            "return np.percentile(np.concatenate(i), 95)",
+            "numbers of points",
+        ),
+        ("return np.percentile(spatial.cKDTree(a).query(b)[1], 95)", "numbers of points"),
+        (
+            "i = spatial.cKDTree(b).query(a)[1], spatial.cKDTree(a).query(b)[1]; "
+            "return max(np.percentile(n, 95) for n in i)",
+            "numbers of points",
+        ),
         ("return np.percentile(spatial.cKDTree(b).query(a, k=2)[0], 95)", "k=2 takes the second nearest point too"),
         ("return spatial.cKDTree(b).query(a)[0].mean()", "This is the mean distance"),
         ("return np.linalg.norm(a.mean(0) - b.mean(0))", None),

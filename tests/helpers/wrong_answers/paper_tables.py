@@ -4,6 +4,21 @@
 WRONG = {
     "10.1": [
         ("v = [s[key][side] for s in slices]; return min(v), max(v)", "no balloon"),
+        ("v = [s[key][side] for s in slices if s['status'] != 'hull']; return min(v), max(v)", "Carried and skipped"),
+        (
+            "v = [s[key][side] for s in slices if s['status'] in ('balloon', 'carried')]; return min(v), max(v)",
+            "Carried and skipped",
+        ),
+        (
+            "v = [s[key] for s in slices if s['status'] == 'balloon']; return min(v)[side], max(v)[side]",
+            "before, not after",
+        ),
+        (
+            "v = [s[key][side] for s in slices if s['status'] == 'balloon']; return round(min(v)), round(max(v))",
+            "as they are",
+        ),
+        ("v = [int(s[key][side]) for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "as they are"),
+        ("v = [s[key][side] for s in slices if s[key][side] > 0]; return min(v), max(v)", "Carried and skipped"),
         ("v = [s[key][1 - side] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "side 0"),
         ("v = [s[key][0] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "outer side whatever"),
         ("v = [s[key][1] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "inner side whatever"),

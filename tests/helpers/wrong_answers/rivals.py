@@ -72,6 +72,11 @@ WRONG = {
         ("return h * (3 * a**2 + h**2) / (3 * a**2)", "2 times the right"),
         ("return np.sqrt(a**2 + h**2)", "This is the way from the top of the cap to"),
         ("return h - h / 2 * a", None),
+        ("return np.pi * h * (3 * a**2 + h**2) / 6 / (np.pi * (a / 2) ** 2)", "radius already"),
+        ("r = a / 2; return h * (3 * r**2 + h**2) / (6 * r**2)", "radius already"),
+        ("return h * (3 * (a / 2) ** 2 + h**2) / (6 * a**2)", "radius already"),
+        ("d = 2 * a; return h * (3 * d**2 + h**2) / (6 * d**2)", "radius already"),
+        ("return h * (3 * (2 * a) ** 2 + h**2) / (6 * a**2)", "radius already"),
         ("return h * 0.5 + h**2 / 6", "The function does not use `a`"),
     ],
     "8.3": [
@@ -83,7 +88,10 @@ WRONG = {
         ("return ~convex_hull_image(inner) & ~bone", "What lies outside the head is in it"),
         ("return convex_hull_image(bone & ~inner)", "This is the whole hull of the bone"),
         ("return convex_hull_image(bone) ^ convex_hull_image(inner)", "Bone is still in it"),
-        ("return convex_hull_image(inner) & ~convex_hull_image(bone) & ~bone", "Turned round"),
+        ("return convex_hull_image(inner) & ~convex_hull_image(bone) & ~bone", "The mask is empty"),
+        ("return ndimage.binary_fill_holes(bone) & ~bone", "The mask is empty: an open ring has no hole"),
+        ("return np.zeros_like(bone)", "The mask is empty"),
+        ("return convex_hull_image(bone) & ~convex_hull_image(inner) & bone", "not & bone"),
         ("return convex_hull_image(bone) - convex_hull_image(inner) - bone", "stopped with TypeError"),
         (
             "return convex_hull_image(bone) & ~ndimage.binary_fill_holes(inner) & ~bone",

@@ -53,6 +53,9 @@ WRONG = {
             "Always the second",
         ),
         (f"{SPLINE}; return np.linalg.solve(W + strength**2 * D.T @ D, W @ f)", "square"),
+        (f"{SPLINE}; return np.linalg.solve(W - strength * D.T @ D, W @ f)", "sign of the smoothing"),
+        (f"{SPLINE}; return np.linalg.solve(strength * D.T @ D - W, W @ f)", "sign of W"),
+        (f"{SPLINE}; return np.linalg.solve(W + strength * D.T @ D, -W @ f)", "sign is turned"),
         ((f"{SPLINE}; return np.linalg.solve(W + strength * D @ D.T, W @ f)"), "stopped with ValueError"),
         ((f"{SPLINE}; return np.linalg.lstsq(W + strength * D.T @ D, f)[0]"), "What stands in the gap still pulls"),
         (

@@ -38,7 +38,18 @@ WRONG = {
         (f"{GAIN}; return np.array([gain.std(axis=0, ddof=1), gain.mean(axis=0)])", "The mean comes first"),
         (f"{GAIN}; return np.column_stack([gain.mean(axis=0), gain.std(axis=0, ddof=1)])", "yours are columns"),
         (f"{GAIN}; return gain", None),
-        ("gain = scores - scores[:, usual]; return np.array([gain.mean(axis=0), gain.std(axis=0)])", "ValueError"),
+        (
+            "gain = scores - scores[:, usual]; return np.array([gain.mean(axis=0), gain.std(axis=0)])",
+            "keep it a column",
+        ),
+        (
+            "gain = scores[:, usual] - scores; return np.array([gain.mean(axis=0), gain.std(axis=0)])",
+            "keep it a column",
+        ),
+        (
+            f"{GAIN}; d = scores.std(axis=0, ddof=1); return np.array([gain.mean(axis=0), d - d[usual]])",
+            "difference of two spreads",
+        ),
     ],
     "11.2": [
         ("return (length / (n - 1)) ** 2 / radius", "twice the pressure"),
@@ -57,6 +68,22 @@ WRONG = {
         ("return -tension * (length / (n - 1)) ** 2 / radius", "Outward is positive"),
         ("return 2 * tension * (length / (n - 1)) ** 2 / radius", "2 times the right"),
         ("return tension * length**2 / (n - 1) / radius", "goes with (n - 1)"),
+        ("h = length / (n - 1); return tension * h**2 / radius + h**4 / radius**3", "rigidity is still in it"),
+        ("h = length / (n - 1); return tension * (h**2 / radius + h**4 / radius**3)", "rigidity is still in it"),
+        ("h = length / (n - 1); return tension * h**2 / radius - h**4 / radius**3", "rigidity is still in it"),
+        (
+            "chord = 2 * radius * np.sin(length / 2 / radius); return tension * (chord / (n - 1)) ** 2 / radius",
+            "chord from end to end",
+        ),
+        (
+            "arc = 2 * radius * np.arcsin(length / 2 / radius); return tension * (arc / (n - 1)) ** 2 / radius",
+            "for the chord from end to end",
+        ),
+        (
+            "h = 2 * radius * np.sin(length / (n - 1) / 2 / radius); return tension * h**2 / radius",
+            "takes a step straight",
+        ),
+        ("h = length / (n - 1); return 2 * tension * (1 - np.cos(h / radius)) * radius", "takes a step straight"),
     ],
     "11.3": [
         (f"{BOTH}; return table - a - b", "taken off twice"),
@@ -79,7 +106,7 @@ WRONG = {
         ("return table - table[0] - table[:, :1] + table[0, 0]", "from the first level"),
         (f"{BOTH}; return (table - a - b + table.mean()) / table.std()", "No need to scale"),
         ("return table", "as it was given"),
-        ("return table - table.mean(axis=1) - table.mean(axis=0) + table.mean()", "ValueError"),
+        ("return table - table.mean(axis=1) - table.mean(axis=0) + table.mean()", "keep it a column"),
     ],
     "11.4": [
         ("return scores.mean(axis=0).max()", "chosen by the heads that it is judged by"),
@@ -115,5 +142,28 @@ WRONG = {
         ),
         (f"scores = scores.T; {EACH}; return np.mean(found)", "Rows are heads"),
         ("return scores[:, 1:].mean(axis=0).max()", None),
+        (
+            "best = scores.mean(axis=0).argmax(); return scores[:, best].mean()",
+            "chosen by the heads that it is judged by",
+        ),
+        (
+            "best = [np.delete(scores, i, 0).mean(axis=0).argmax() for i in range(len(scores))]; "
+            "return scores[:, best].mean()",
+            "every head with every choice",
+        ),
+        (
+            "return np.mean([np.delete(scores, i, 0)[:, scores[i].argmax()].mean() for i in range(len(scores))])",
+            "Turned round",
+        ),
+        (
+            "best = [np.median(np.delete(scores, i, 0), axis=0).argmax() for i in range(len(scores))]; "
+            "return scores[range(len(scores)), best].mean()",
+            "by the median of the others",
+        ),
+        (
+            "best = [np.delete(scores, i, 0).min(axis=0).argmax() for i in range(len(scores))]; "
+            "return scores[range(len(scores)), best].mean()",
+            "by the worst case of the others",
+        ),
     ],
 }

@@ -105,6 +105,24 @@ def test_a_panel_refuses_a_control_it_does_not_have(static, arch):
         widgets.balloon(arch, INSIDE).set(kk=1)
 
 
+def test_every_panel_refuses_a_number_beyond_its_sliders_and_moves_nothing(static, panels):
+    """A number that was clipped in silence would be taken for the answer to another question."""
+    for name, panel in panels.items():
+        before = dict(panel.values)
+        for slider in (control for control in panel.controls.values() if isinstance(control, Slider)):
+            for value in (slider.low - slider.step, slider.high + slider.step, float("nan"), "much"):
+                with pytest.raises(InputRefused, match=f"It takes {slider.low:g} to {slider.high:g}"):
+                    panel.set(**{slider.name: value})
+        assert panel.values == before, name
+
+
+def test_a_control_without_effect_is_named_when_it_is_set_to_something_new(static):
+    view = View(np.zeros((4, 4, 3), np.uint8), "A square.", off=("k",))
+    panel = widgets.Panel((Slider("k", "k", 0, 3, 1), Slider("n", "n", 0, 3, 1)), lambda k, n: view, alt="A square.")
+    assert panel.set(n=2, k=1).view.line == "A square."
+    assert panel.set(n=3, k=2).view.line == "A square. No effect at this setting: k."
+
+
 def test_all_panels_have_the_size_that_fits_a_laptop_and_few_controls_unfolded(panels):
     for name, panel in panels.items():
         assert panel.view.rgb.shape == (HEIGHT, WIDTH, 3), name

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.drawing.canvas import Canvas
+from cranio_nb.drawing.canvas_axes import Chart
 from cranio_nb.drawing.pixels import Window
 from cranio_nb.mesh import Mesh
 from cranio_nb.teaching.widgets import parts
@@ -62,3 +63,15 @@ def test_the_letters_of_a_slice_follow_its_affine():
     for edge in (top, right):
         np.testing.assert_array_equal(pictures["turned"][edge], wanted.array()[edge])
         assert (pictures["upright"][edge] != wanted.array()[edge]).any()
+
+
+def test_the_ends_of_an_axis_have_the_letters_of_the_sides_it_leads_to():
+    """Turned round, the axis has its two letters exchanged."""
+    chart, ink = Chart((0, 0, 200, 120), (0, 1), (0, 1)), {}
+    for way in (1, -1):
+        canvas = Canvas(200, 120)
+        parts.name_ends(canvas, chart, (0, way, 0))
+        x, y, width, height = map(round, chart.area)
+        row = canvas.array()[y + height - 22 : y + height - 2] < 128
+        ink[way] = [int(row[:, at : at + 20].sum()) for at in (x, x + width - 20)]
+    assert ink[1] == ink[-1][::-1] and ink[1][0] != ink[1][1] and all(ink[1])

@@ -22,7 +22,7 @@ from ....vault import radius_measurement, symmetry
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from ..parts import HEIGHT, WIDTH, coloured, draw_colour_scale
+from ..parts import HEIGHT, WIDTH, coloured, draw_colour_scale, name_ends
 from .scene import Array, Scene, error_line, make_scene, thin_rays
 
 _EVERY = 3  # rays
@@ -136,6 +136,7 @@ def _draw_profile(canvas: Canvas, scene: Scene, plate: Array) -> None:
     # whole skull dashed, plate full, bone beside the hole as dots
     profile = Chart((_HALF, 48, _HALF, HEIGHT - 110), ends, (low - 1, high + 0.35 * (high - low) + 1))
     profile.frame(canvas, "radius of the outer surface (mm)", "along the map's middle row (mm)")
+    name_ends(canvas, profile, radius_map.grid.axes[0])
     for curve, colour, width, dash in ((scene.true[row], TRUTH, 3.0, (7, 4)), (plate[row], PROSTHESIS, 2.5, None)):
         for part in _runs(np.isfinite(curve) & near):
             canvas.line(profile.px(np.column_stack([x, curve])[part]), colour, width=width, dash=dash)

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from scipy import ndimage
 
 from ....drawing.canvas import Canvas
 from ....drawing.canvas_axes import Chart
@@ -25,7 +26,7 @@ from ....vault.ray_grid import RadiusMap
 from ....volume import Volume
 from ..controls import Slider, View
 from ..panel import Panel
-from ..parts import HEIGHT, WIDTH
+from ..parts import HEIGHT, WIDTH, name_ends
 from .scene import Array, Scene, error_line, make_scene
 
 MAX_STEPS = 40
@@ -141,8 +142,8 @@ def _view(scene: Scene, way: Way, step: int) -> View:
     step = min(step, last)
     now = way.motions[step]
     canvas = Canvas(WIDTH, HEIGHT)
-    _draw_net(canvas, way, now.sheet, scene.radius_map.grid.axes)
-    _draw_cut(canvas, way, now.sheet)
+    _draw_net(canvas, way, now.sheet, scene.radius_map)
+    _draw_cut(canvas, way, now.sheet, scene.radius_map.grid.axes[0])
     _draw_energy(canvas, way, step)
     # the numbers of this step, and how far the sheet is off in the hole
     state = "at rest" if now.converged else "not at rest"
@@ -154,8 +155,8 @@ def _view(scene: Scene, way: Way, step: int) -> View:
     return View(canvas.array(), line + ".", limits={"step": last})
 
 
-def _draw_net(canvas: Canvas, way: Way, one: Sheet, axes: Array) -> None:
-    """Control net, sheet and bone, seen from outside and a little from below."""
+def _draw_net(canvas: Canvas, way: Way, one: Sheet, radius_map: RadiusMap) -> None:
+    """Control net, sheet, bone and the edge of the hole, seen from outside and a little from below."""
     # seen along a line that leans by _LEAN; the last shape and the bone set the scale
     flat = lambda points: points @ np.array([[1, 0], [0, -np.cos(_LEAN)], [0, -np.sin(_LEAN)]])  # noqa: E731
     springs = way.setting.springs.points
@@ -164,6 +165,9 @@ def _draw_net(canvas: Canvas, way: Way, one: Sheet, axes: Array) -> None:
     place = lambda points: (flat(points) - middle) * zoom + np.array([_SIDE, _TOP]) / 2  # noqa: E731
     inset = Canvas(_SIDE, _TOP)
     inset.dots(place(springs[::2]), BONE, radius=1.5)  # every other one: they are many, and hold still
+    # rays of the hole next to bone, where the sheet at the end meets them
+    edge = np.argwhere(radius_map.hole & ~ndimage.binary_erosion(radius_map.hole))
+    inset.dots(place(way.motions[-1].sheet.at(*(edge * one.spans / (len(radius_map.hole) - 1)).T)), BLACK, radius=1.5)
     # lines of the sheet twice in each span, then its control net
     (n, m), fine = one.spans, 48
     v, u = np.linspace(0, n, 2 * n + 1), np.linspace(0, m, 2 * m + 1)
@@ -175,11 +179,12 @@ def _draw_net(canvas: Canvas, way: Way, one: Sheet, axes: Array) -> None:
     for points in (*one.control, *one.control.swapaxes(0, 1)):
         inset.line(place(points), START, width=1)
     inset.dots(place(one.control.reshape(-1, 3)), START, radius=3, edge=BLACK)
+    axes = radius_map.grid.axes
     inset.sides((0, 0, _SIDE, _TOP), axes[0], -axes[1])
     canvas.inlay(inset, 0, 0)
 
 
-def _draw_cut(canvas: Canvas, way: Way, one: Sheet) -> None:
+def _draw_cut(canvas: Canvas, way: Way, one: Sheet, right: Array) -> None:
     """The middle of the sheet across the head: bone that pulls, sheet, and its row of control points."""
     # springs beside the middle line, and the row of control points next to it
     springs, middle = way.setting.springs, one.spans[0] / 2
@@ -190,6 +195,7 @@ def _draw_cut(canvas: Canvas, way: Way, one: Sheet) -> None:
     # limits by the bone, so that the axes hold still while the sheet moves
     cut = Chart((_SIDE, 0, _SIDE, _TOP), (-wide, wide), (float(springs.points[:, 2].min()) - 8, high))
     cut.frame(canvas, "a cut: out of the head (mm)", "across the hole (mm)")
+    name_ends(canvas, cut, right)
     canvas.dots(cut.px(points[:, [0, 2]]), BONE, radius=3.5, edge=BLACK)
     u = np.linspace(0, one.spans[1], 80)
     canvas.line(cut.px(one.at(np.full(80, middle), u)[:, [0, 2]]), PROSTHESIS, width=2.5)
@@ -204,6 +210,8 @@ def _draw_energy(canvas: Canvas, way: Way, step: int) -> None:
     curve = Chart((0, _TOP, WIDTH, HEIGHT - _TOP), (0, len(energy)), limits, log=True)
     curve.frame(canvas, "energy: bending, springs and motion (mm\N{SUPERSCRIPT FOUR})", "step")
     entries = [(START, "dot", "control net"), (PATCH, "line", "sheet of the net"), (PROSTHESIS, "line", "sheet, cut")]
-    canvas.legend(WIDTH - 170, _TOP + 30, [*entries, (BONE, "dot", "bone")])
+    entries += [(BONE, "dot", "bone"), (BLACK, "dot", "edge of the hole")]
+    canvas.legend(WIDTH - 330, _TOP + 24, entries[:3])
+    canvas.legend(WIDTH - 165, _TOP + 24, [*entries[3:], (WHITE, "dot", "step shown")])
     canvas.line(curve.px(np.column_stack([np.arange(len(energy)), energy])), MEASURE, width=2)
     canvas.dots(curve.px([[step, energy[step]]]), WHITE, radius=5, edge=BLACK)
