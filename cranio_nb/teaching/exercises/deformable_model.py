@@ -11,6 +11,7 @@ from ...stages.deformable_model import inflate
 from .task import Answer, Exercise, small_head
 
 _PX = 0.45  # mm: 512 pixels over a head
+_ROUNDED = "The number was rounded, or cut by `//`: return it whole."
 
 
 def _pressures():
@@ -89,21 +90,12 @@ EXERCISES: dict[str, Exercise] = {
             (lambda k, n: k * n / 8, "N is squared, and counts the steps: N = n - 1."),
             (lambda k, n: k * (n - 1) * (n - 2) / 8, "The parabola is i (N - i): at its middle both are N / 2."),
             (lambda k, n: (n - 1) ** 2 / 8, "The pressure is missing: twice the wind, twice the height."),
-            (
-                lambda k, n: k * (n - 1) ** 2 / 8 * _PX,
-                "This is in mm of the paper's pixel; the height is wanted in px.",
-            ),
+            (lambda k, n: k * (n - 1) ** 2 / 8 * _PX, "This is in mm of the paper's pixel: px are wanted."),
             (lambda k, n: k * (n - 2) ** 2 / 8, "N counts the steps between snaxels: N = n - 1."),
             (lambda k, n: k * (n / 2) * (n / 2 - 1) / 2, "N counts the steps between snaxels: N = n - 1."),
             (lambda k, n: k * (n - 1) // 2 * (n - (n - 1) // 2) / 2, "The parabola is i (N - i), with N = n - 1."),
             (lambda k, n: k * ((n - 1) // 2) * (n - (n - 1) // 2) / 2, "The parabola is i (N - i), with N = n - 1."),
-            *(
-                (
-                    lambda k, n, d=d: round(k * (n - 1) ** 2 / 8, d),
-                    "The number was rounded, or cut by `//`: return it whole.",
-                )
-                for d in (0, 1, 2, 3)
-            ),
+            *((lambda k, n, d=d: round(k * (n - 1) ** 2 / 8, d), _ROUNDED) for d in range(4)),
             (
                 lambda k, n: k * (n - 1) ** 2 / 8 - k * (n - 1) / np.sqrt(5),
                 "Here the clamps are in it: the apex away from the ends is asked for, that of the parabola.",
