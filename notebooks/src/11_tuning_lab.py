@@ -78,7 +78,13 @@ start = dict(panel.values)
 trials = {"pressure_mm": (0.04, 0.16), "tension": (0.5, 2), "rigidity": (0.5, 2)}
 trials |= {"skip_mm": (1, 3), "reach_mm": (5, 20)}
 rough = quick | {"smooth": False}  # the voxels are the same
-dice_of = lambda change: float(panel.set(**start | change).view.line[4:9])  # noqa: E731
+
+
+def dice_of(change):
+    """The first number of the panel's line."""
+    return float(panel.set(**start | change).view.line[4:9])
+
+
 print(f"Dice, quick default: {dice_of(rough):.2f}")
 for name, pair in trials.items():
     print(f"{name:12}", end="")
