@@ -8,11 +8,13 @@ from __future__ import annotations
 import pickle
 import subprocess
 import sys
+from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
-from typing import Any
+from typing import IO, Any
 
 from ..drawing import figures
+from ..opening import Opening
 from ..pipeline.preparation import Prepared
 from ..prosthesis import Prosthesis
 from .design_pictures import shape_shots, vault_of
@@ -69,7 +71,7 @@ class Painter:
     def _drawn(self, made: Prosthesis) -> Shots:
         if self._process is None:
             return shape_shots(self._case, self._vault.result(), made)
-        if self._vault.result() and self._tell(made):
+        if self._vault.result() and self._tell(made, self._case.openings):
             assert self._process.stdout is not None
             with suppress(*_CUT_SHORT):
                 shots: Shots = pickle.load(self._process.stdout)
@@ -77,11 +79,11 @@ class Painter:
         # it died, or was killed for want of memory: here it takes longer
         return shape_shots(self._case, vault_of(self._case), made)
 
-    def _tell(self, what: Prepared | Prosthesis) -> bool:
+    def _tell(self, what: Prepared | Prosthesis, known: Sequence[Opening] = ()) -> bool:
         """Send to the process; whether it was there."""
         assert self._process is not None and self._process.stdin is not None
         try:
-            pickle.dump(what, self._process.stdin, protocol=pickle.HIGHEST_PROTOCOL)
+            _Sender(self._process.stdin, known).dump(what)
             self._process.stdin.flush()
         except OSError:
             return False
@@ -97,6 +99,26 @@ class Painter:
         process.wait()
 
 
+class _Sender(pickle.Pickler):
+    """Openings that the other process has are named by their index, so that there too they are the same ones."""
+
+    def __init__(self, stream: IO[bytes], known: Sequence[Opening]) -> None:
+        super().__init__(stream, pickle.HIGHEST_PROTOCOL)
+        self._index = {id(opening): index for index, opening in enumerate(known)}
+
+    def persistent_id(self, what: Any) -> int | None:
+        return self._index.get(id(what))
+
+
+class _Receiver(pickle.Unpickler):
+    def __init__(self, stream: IO[bytes], known: Sequence[Opening]) -> None:
+        super().__init__(stream)
+        self._known = known
+
+    def persistent_load(self, index: int) -> Opening:
+        return self._known[index]
+
+
 def draw_for_parent() -> None:
     """In the process that draws: take the case and the prosthesis from standard input, and answer on standard output.
 
@@ -106,7 +128,7 @@ def draw_for_parent() -> None:
     try:
         case = pickle.load(sys.stdin.buffer)
         vault = vault_of(case)
-        made = pickle.load(sys.stdin.buffer)
+        made = _Receiver(sys.stdin.buffer, case.openings).load()
     except _CUT_SHORT:
         return  # there is nothing to draw
     pickle.dump(shape_shots(case, vault, made), sys.stdout.buffer, protocol=pickle.HIGHEST_PROTOCOL)
