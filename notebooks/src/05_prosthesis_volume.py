@@ -177,7 +177,7 @@ papers = [paper] + [cn.design(b, holes, preset="paper") for _, b, holes in heads
 
 # %%
 def inside_by(case, bone, openings, made):
-    """How far (mm) the outer curve runs inside the true one, on average, by every second plane."""
+    """How far (mm) the outer curve runs inside the true one: its mean in every second plane."""
     below = {}
     for one in made.working[0].slices[::2]:
         at = one.plane + max(openings[0].planes[0] - 2, 0)

@@ -43,7 +43,7 @@ def test_each_stored_picture_is_the_live_one(kind, arch, ct):
         frames = draw_frames(panel, (Axis(plane, (0, panel.values["plane"]), 1), Axis(width, (400, 1500), 1)))
     as_shown = dict(panel.values)
     for values, name, line in zip(settings(frames), frames.names, frames.lines, strict=True):
-        live = panel.set(**as_shown | values).view
+        live = panel.update(as_shown | values)  # as by hand
         assert line == live.line and close(decoded(frames.files[name]), live.rgb), values
 
 
