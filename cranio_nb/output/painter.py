@@ -11,6 +11,7 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from io import BytesIO
 from typing import IO, Any
 
 from ..drawing import figures
@@ -18,7 +19,7 @@ from ..opening import Opening
 from ..pipeline.preparation import Prepared
 from ..prosthesis import Prosthesis
 from .design_pictures import shape_shots, vault_of
-from .pages import Shot
+from .pages import Shot, shot
 
 _LARGE = 2**24  # voxels from which a process pays
 _CUT_SHORT = (EOFError, pickle.UnpicklingError)
@@ -83,8 +84,7 @@ class Painter:
         """Send to the process; whether it was there."""
         assert self._process is not None and self._process.stdin is not None
         try:
-            _Sender(self._process.stdin, known).dump(what)
-            self._process.stdin.flush()
+            _send(self._process.stdin, what, known)
         except OSError:
             return False
         return True
@@ -99,11 +99,32 @@ class Painter:
         process.wait()
 
 
+def _send(stream: IO[bytes], what: Any, known: Sequence[Opening]) -> None:
+    """Write an object: its large arrays first, from where they lie, without a copy of them."""
+    large: list[pickle.PickleBuffer] = []
+    rest = BytesIO()
+    _Sender(rest, known, large).dump(what)
+    pickle.dump([part.raw().nbytes for part in large], stream)
+    for part in large:
+        stream.write(part.raw())
+    stream.write(rest.getbuffer())
+    stream.flush()
+
+
+def _received(stream: IO[bytes], known: Sequence[Opening] = ()) -> Any:
+    """What `_send` wrote."""
+    large = [bytearray(n_bytes) for n_bytes in pickle.load(stream)]
+    for part in large:
+        if stream.readinto(part) < len(part):  # type: ignore[attr-defined]
+            raise EOFError
+    return _Receiver(stream, known, large).load()
+
+
 class _Sender(pickle.Pickler):
     """Openings that the other process has are named by their index, so that there too they are the same ones."""
 
-    def __init__(self, stream: IO[bytes], known: Sequence[Opening]) -> None:
-        super().__init__(stream, pickle.HIGHEST_PROTOCOL)
+    def __init__(self, stream: IO[bytes], known: Sequence[Opening], large: list[pickle.PickleBuffer]) -> None:
+        super().__init__(stream, pickle.HIGHEST_PROTOCOL, buffer_callback=large.append)
         self._index = {id(opening): index for index, opening in enumerate(known)}
 
     def persistent_id(self, what: Any) -> int | None:
@@ -111,8 +132,8 @@ class _Sender(pickle.Pickler):
 
 
 class _Receiver(pickle.Unpickler):
-    def __init__(self, stream: IO[bytes], known: Sequence[Opening]) -> None:
-        super().__init__(stream)
+    def __init__(self, stream: IO[bytes], known: Sequence[Opening], large: Sequence[bytearray]) -> None:
+        super().__init__(stream, buffers=large)
         self._known = known
 
     def persistent_load(self, index: int) -> Opening:
@@ -124,11 +145,11 @@ def draw_for_parent() -> None:
 
     It ends with the process that started it, whose end closes both.
     """
-    figures.new_figure(1.0, 1.0)
+    shot(figures.colour_bar_figure(1.0, ""), alt="", caption="")  # loads what draws and packs
     try:
-        case = pickle.load(sys.stdin.buffer)
+        case: Prepared = _received(sys.stdin.buffer)
         vault = vault_of(case)
-        made = _Receiver(sys.stdin.buffer, case.openings).load()
+        made: Prosthesis = _received(sys.stdin.buffer, case.openings)
     except _CUT_SHORT:
         return  # there is nothing to draw
     pickle.dump(shape_shots(case, vault, made), sys.stdout.buffer, protocol=pickle.HIGHEST_PROTOCOL)
