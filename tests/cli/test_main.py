@@ -1,5 +1,6 @@
 """The group of all commands: help, weight, and how an error ends."""
 
+import os
 import subprocess
 import sys
 
@@ -53,3 +54,17 @@ def commands(group=main, path=()):
 @pytest.mark.parametrize("command", [*commands()], ids=" ".join)
 def test_debug_can_follow_every_command(command):
     assert "--debug" in cranio(*command, "--help").stdout
+
+
+@pytest.mark.parametrize(("asked", "used"), [(None, 1), ("2", min(2, os.cpu_count() or 1))])
+def test_blas_has_one_thread_unless_more_are_asked_for(asked, used):
+    program = (
+        "from click.testing import CliRunner; from cranio_nb.cli.main import main\n"
+        "assert CliRunner().invoke(main, ['methods']).exit_code == 0\n"
+        "import numpy.linalg, scipy.linalg; from threadpoolctl import threadpool_info\n"
+        "print({one['num_threads'] for one in threadpool_info() if one['user_api'] == 'blas'})"
+    )
+    environment = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    environment |= {"OPENBLAS_NUM_THREADS": asked} if asked else {}
+    told = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
+    assert told.stdout.strip() == f"{{{used}}}"
