@@ -6,7 +6,6 @@ Results go to stdout, all else to stderr. Exit codes: 0 done, 1 fault of the pro
 
 from __future__ import annotations
 
-import os
 from typing import Any
 
 import click
@@ -26,9 +25,6 @@ from .prior import prior
 from .score import score
 from .study import study
 
-# the systems solved are small: a second thread of BLAS waits longer than it works, and keeps others from working
-_BLAS_THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-
 
 class ErrorGroup(click.Group):
     """A group of commands whose errors end as one sentence and an exit code."""
@@ -46,8 +42,6 @@ class ErrorGroup(click.Group):
         Any
             What the command gives back.
         """
-        for name in _BLAS_THREADS:
-            os.environ.setdefault(name, "1")
         try:
             return super().invoke(ctx)
         except (click.ClickException, click.exceptions.Exit, click.Abort):
