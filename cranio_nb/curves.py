@@ -202,17 +202,10 @@ def normals(curves: Points) -> Points:
     >>> normals(np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]]))[1].tolist()
     [-0.0, 1.0]
     """
-    # tangent by central differences; written out, as this is half of every step of a balloon
-    step = np.empty(np.shape(curves))
-    step[..., 1:-1, :] = (curves[..., 2:, :] - curves[..., :-2, :]) / 2
-    step[..., 0, :], step[..., -1, :] = curves[..., 1, :] - curves[..., 0, :], curves[..., -1, :] - curves[..., -2, :]
-    # turned by a quarter, of length 1
-    along, out = step[..., 0], step[..., 1]
-    step /= np.maximum(np.sqrt(along * along + out * out), 1e-12)[..., None]
-    normal = np.empty_like(step)
-    np.negative(out, out=normal[..., 0])
-    normal[..., 1] = along
-    return normal
+    # tangent by central differences, turned by a quarter
+    step = np.gradient(curves, axis=-2)
+    normal = np.stack([-step[..., 1], step[..., 0]], axis=-1)
+    return normal / np.maximum(np.linalg.norm(step, axis=-1, keepdims=True), 1e-12)
 
 
 def cubic(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> Points:

@@ -48,7 +48,7 @@ def inspect(
     problem: CranioError | None = None
     found: tuple[JudgedOpening, ...] = ()
     closed: tuple[JudgedOpening, ...] = ()
-    said = thickness_remarks(load.spacing[0])
+    said = thickness_remarks(max(load.spacing))
     try:
         seen = survey_scan(volume, threshold)
         found, said = seen.found, seen.remarks

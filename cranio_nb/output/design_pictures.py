@@ -58,10 +58,23 @@ def shape_shots(case: Prepared, vault: Mesh, made: Prosthesis) -> dict[str, list
     dict of str to list of Shot
         "views", "cuts" and "slices".
     """
-    if made.patch is not None:  # once for all: no picture looks beyond the patch
-        made = replace(made, patch=made.patch.crop(made.patch.box()))
+    made = cropped(made)  # once for all
     views = view_shots(case, vault, made.mesh)
     return {"views": views, "cuts": cut_shots(case, made), "slices": slice_shots(case, made)}
+
+
+def cropped(made: Prosthesis) -> Prosthesis:
+    """A prosthesis with no more than the box of its patch: no picture looks beyond that.
+
+    Parameters
+    ----------
+    made : Prosthesis
+
+    Returns
+    -------
+    Prosthesis
+    """
+    return made if made.patch is None else replace(made, patch=made.patch.crop(made.patch.box()))
 
 
 def view_shots(case: Prepared, vault: Mesh, prosthesis: Mesh) -> list[Shot]:

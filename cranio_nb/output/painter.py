@@ -11,6 +11,7 @@ import sys
 from collections.abc import Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
+from dataclasses import replace
 from io import BytesIO
 from typing import IO, Any
 
@@ -18,7 +19,7 @@ from ..drawing import figures
 from ..opening import Opening
 from ..pipeline.preparation import Prepared
 from ..prosthesis import Prosthesis
-from .design_pictures import shape_shots, vault_of
+from .design_pictures import cropped, shape_shots, vault_of
 from .pages import Shot, shot
 
 _LARGE = 2**24  # voxels from which a process pays
@@ -67,12 +68,13 @@ class Painter:
         if self._process is None:
             figures.new_figure(1.0, 1.0)  # loads matplotlib
             return vault_of(self._case)
-        return self._tell(self._case)
+        # without what is not drawn: a sheet of each opening that stays open is as large as the scan
+        return self._tell(replace(self._case, left_open=(), truth=None))
 
     def _drawn(self, made: Prosthesis) -> Shots:
         if self._process is None:
             return shape_shots(self._case, self._vault.result(), made)
-        if self._vault.result() and self._tell(made, self._case.openings):
+        if self._vault.result() and self._tell(cropped(made), self._case.openings):
             assert self._process.stdout is not None
             with suppress(*_CUT_SHORT):
                 shots: Shots = pickle.load(self._process.stdout)

@@ -58,7 +58,7 @@ class Survey:
         InputRefused, NoOpening
             As `choose_openings`; that there is no opening is said with what this scan cannot show.
         """
-        smallest_mm = smallest_hole_mm(float(self.bone.spacing[0]))
+        smallest_mm = smallest_hole_mm(float(self.bone.spacing.max()))
         return choose_openings(self.found, numbers, smallest_mm=smallest_mm, said=self.remarks)
 
 
@@ -91,7 +91,7 @@ def survey_scan(scan: Volume, threshold: float | None = None) -> Survey:
     parts = parts_of(scan, threshold)
     bone, frame = parts.bone, find_head_frame(parts.bone)
     remarks = (
-        *thickness_remarks(float(scan.spacing[0])),
+        *thickness_remarks(float(scan.spacing.max())),
         *orientation_remarks(frame),
         *second_skull_remarks(bone, parts.others),
     )

@@ -236,7 +236,7 @@ def apply_threshold(hu: NDArray, threshold: float, upper: float = np.inf) -> NDA
     >>> apply_threshold(np.array([399, 400, 1000, 1001]), 400, 1000)
     array([False,  True,  True, False])
     """
-    if hu.dtype.kind in "iu":  # whole numbers are compared as they are, not as floats
+    if hu.dtype.kind in "iu" and np.isfinite(threshold):  # whole numbers are compared as they are, not as floats
         threshold = int(np.ceil(threshold))
     return hu >= threshold if np.isinf(upper) else (hu >= threshold) & (hu <= upper)
 

@@ -110,7 +110,7 @@ def survey_openings(
     outermost = measure_outermost_bone(bone, grid)
     groups = open_rays(outermost, min_diameter_mm)
     unfilled = _unfilled(bone, scan)
-    seen = measure_outermost_bone(unfilled, grid)
+    seen = outermost if unfilled is bone else measure_outermost_bone(unfilled, grid)
     hints = hinted_rays(seen, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
     judged: list[JudgedOpening] = []
     for some, mask, rays_of, plain in ((groups, bone, outermost, True), (hints, unfilled, seen, False)):
@@ -131,7 +131,11 @@ def _unfilled(bone: Volume, scan: Volume | None) -> Volume:
     """The bone without the pores of its slices that were filled: where a slice cuts the vault flat, a hole is one."""
     if scan is None:
         return bone
-    return bone.with_voxels(bone.voxels & (scan.voxels if scan.voxels.dtype == bool else scan.voxels >= SOFT_HU))
+    # only where there is bone, and without a second volume beside the result
+    box, kept = bone.box(), np.zeros(bone.shape, bool)
+    np.greater_equal(scan.voxels[box], 1 if scan.voxels.dtype == bool else int(SOFT_HU), out=kept[box])
+    kept[box] &= bone.voxels[box]
+    return bone.with_voxels(kept)
 
 
 def _bridged_radius(outermost: OutermostBone, groups: list[NDArray[np.bool_]]) -> NDArray[np.float64]:

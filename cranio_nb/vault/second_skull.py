@@ -63,9 +63,9 @@ def _remark(bone: Volume, other: Volume, way: NDArray[np.float64]) -> Finding:
     distance = float(np.linalg.norm(way))
     place = name_place(head_axes(bone) @ way / distance)
     message = (
-        f"There is a second skull in the image, {' x '.join(map(str, extent))} mm, in planes {its_first}:{its_last}, "
-        f"{distance:.0f} mm from the other ({place}). It is not looked at: only the skull in planes {first}:{last} is. "
-        "If the second one is meant, give an image of it alone."
+        f"There is a second skull in the image, {' x '.join(map(str, extent))} mm, in planes {its_first} to {its_last},"
+        f" {distance:.0f} mm from the other ({place}). It is not looked at: only the skull in planes {first} to {last}"
+        " is. If the second one is meant, give an image of it alone."
     )
     values = {"planes": [its_first, its_last], "extent_mm": extent, "distance_mm": round(distance, 1), "place": place}
     return Finding("SecondSkull", "warning", message, values)

@@ -55,3 +55,12 @@ def test_how_the_head_lies_is_found_once_a_run_and_handed_on(method, skull, tmp_
     assert len(found) == 2
     np.testing.assert_array_equal(again.patch.voxels, made.patch.voxels)
     np.testing.assert_array_equal(again.mesh.vertices, made.mesh.vertices)
+
+
+def test_thick_slices_are_said_whichever_axis_they_lie_along(phantom):
+    case = phantom("bilateral")
+    affine = case.affine.copy()
+    affine[:, 1] *= 3  # rows of 5.25 mm, as in a coronal series, between planes of 3 mm
+    seen = survey_scan(cn.Volume(case.hu[:, ::3], affine))
+    said = {one.code: one.values for one in seen.remarks}
+    assert said["ThickSlices"]["slice_mm"] == pytest.approx(5.25)

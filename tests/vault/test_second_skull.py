@@ -39,7 +39,7 @@ def test_of_two_skulls_the_one_that_is_not_looked_at_is_named_with_its_place(axi
     )
     first, last = np.quantile(left_out[:, 0], [0, 1]) + (halves[0] * scan.shape[0] / 2 if axis == 0 else 0)
     assert abs(found.values["planes"][0] - first) <= 1 and abs(found.values["planes"][1] - last) <= 1
-    assert f"planes {found.values['planes'][0]}:{found.values['planes'][1]}" in found.message
+    assert f"planes {found.values['planes'][0]} to {found.values['planes'][1]}" in found.message
 
 
 @pytest.mark.parametrize("defect", ["unilateral", "multiple", "large"])
