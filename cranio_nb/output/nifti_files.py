@@ -5,13 +5,12 @@ Frame: a `Volume` is in world mm, DICOM LPS; NIfTI holds the same places in RAS.
 
 from __future__ import annotations
 
-import gzip
-import zlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from zlib_ng import gzip_ng, zlib_ng
 
 from ..errors import CannotWrite
 from ..grid import AxisOrder
@@ -21,7 +20,7 @@ from .files import write_whole
 _AFFINE_TOLERANCE_MM = 1e-3
 _TYPES = ("uint8", "int16", "int32", "float32", "float64")
 _VOXELS_AT = 352  # bytes: the header, and that nothing extends it
-_LEVEL, _GZIP = 4, 31  # how hard to pack; a window of 32 kB within gzip, in the words of zlib
+_GZIP = 31  # a window of 32 kB within gzip, in the words of zlib
 _LPS_TO_RAS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 
@@ -61,9 +60,7 @@ def write_nifti(volume: Volume, path: str | Path, order: AxisOrder | None = None
     affine = _LPS_TO_RAS @ stored.affine
     # no time stamp in the compressed file: equal volumes give equal files
     parts = _nifti_bytes(voxels, affine)
-    # a mask is runs of one value: looking for nothing else takes half the time, and packs no worse
-    runs = zlib.Z_RLE if volume.voxels.dtype == bool else zlib.Z_DEFAULT_STRATEGY
-    data = _packed(parts, runs) if path.name.lower().endswith(".gz") else b"".join(parts)
+    data = _packed(parts) if path.name.lower().endswith(".gz") else b"".join(parts)
     write_whole(path, data, lambda part: _check_nifti_file(part, voxels, affine))
 
 
@@ -83,9 +80,9 @@ def _nifti_bytes(voxels: NDArray, affine: NDArray[np.float64]) -> Iterator[bytes
     yield from (plane.tobytes() for plane in voxels.T)
 
 
-def _packed(parts: Iterable[bytes], strategy: int) -> bytes:
+def _packed(parts: Iterable[bytes]) -> bytes:
     """The same as gzip, without a time stamp."""
-    packer = zlib.compressobj(_LEVEL, zlib.DEFLATED, _GZIP, strategy=strategy)
+    packer = zlib_ng.compressobj(wbits=_GZIP)
     return b"".join([*(packer.compress(part) for part in parts), packer.flush()])
 
 
@@ -94,7 +91,7 @@ def _check_nifti_file(part: Path, voxels: NDArray, affine: NDArray[np.float64]) 
     import nibabel
 
     packed = part.name.lower().endswith(".gz")
-    with gzip.open(part) if packed else part.open("rb") as file:
+    with gzip_ng.open(part) if packed else part.open("rb") as file:
         head = nibabel.Nifti1Header.from_fileobj(file)
         file.seek(_VOXELS_AT)
         same = head.get_data_shape() == voxels.shape and head.get_data_dtype() == voxels.dtype

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import gzip
 import warnings
-import zlib
 from collections.abc import Collection
 from typing import Any, BinaryIO, cast
 
 import numpy as np
+from zlib_ng import gzip_ng, zlib_ng
 
 from ..errors import InputRefused
 from ..grid import Affine
@@ -53,7 +52,7 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
     # the header, and as many voxels as it declares
     packed, size = stream.read(2) == b"\x1f\x8b", stored_bytes(stream)
     stream.seek(0)
-    data = cast(BinaryIO, gzip.GzipFile(fileobj=stream)) if packed else stream
+    data = cast(BinaryIO, gzip_ng.GzipFile(fileobj=stream)) if packed else stream
     try:
         header = _header(data)
         shape = check_shape([int(n) for n in header.get_data_shape()])
@@ -63,7 +62,7 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
         check_promise(count, size if packed else size - offset, packing=GZIP_PACKING if packed else 1)
         data.seek(offset)
         content, rest = read_voxels(data, count)
-    except (EOFError, OSError, zlib.error) as error:
+    except (EOFError, OSError, zlib_ng.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
 
     # index -> LPS mm, and the scaling of the numbers

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import bz2
-import gzip
 import warnings
-import zlib
 from collections.abc import Collection
 from typing import Any, BinaryIO, cast
 
 import numpy as np
 from numpy.typing import NDArray
+from zlib_ng import gzip_ng, zlib_ng
 
 from ..errors import InputRefused
 from ..grid import Affine
@@ -144,12 +143,12 @@ def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[
     check_promise(count, stored_bytes(stream) - stream.tell(), packing=packing)
     data = stream
     if encoding in ("gzip", "gz"):
-        data = cast(BinaryIO, gzip.GzipFile(fileobj=stream))
+        data = cast(BinaryIO, gzip_ng.GzipFile(fileobj=stream))
     elif encoding in ("bzip2", "bz2"):
         data = cast(BinaryIO, bz2.BZ2File(stream))
     try:
         return read_voxels(data, count)
-    except (EOFError, OSError, zlib.error) as error:
+    except (EOFError, OSError, zlib_ng.error) as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
 
 

@@ -134,7 +134,7 @@ def _check_not_packed(path: Path) -> None:
 
 def _looks_like_dicom(path: Path) -> bool:
     """Whether a file begins as DICOM does."""
-    from .dicom.parse import looks_like_dicom
+    from .dicom.file_list import looks_like_dicom
 
     with open(path, "rb") as stream:
         return looks_like_dicom(stream.read(136))

@@ -1,4 +1,7 @@
-"""Folder -> the regular files in it that may be DICOM, in a fixed order. Links are never followed."""
+"""Folder -> the regular files in it that may be DICOM, in a fixed order. Links are never followed.
+
+Nothing is parsed here, and pydicom is not loaded.
+"""
 
 from __future__ import annotations
 
@@ -16,6 +19,28 @@ MAX_DEPTH = 8
 _INDEX_NAMES = {"dicomdir"}
 IMAGE_SUFFIXES = {".dcm", ".dicom", ".ima"}
 _MAC_PREFIX = "._"  # a Mac keeps what other file systems cannot hold in a second file of this name
+
+
+def looks_like_dicom(start: bytes) -> bool:
+    r"""Whether a file's first bytes are those of DICOM, with its preamble or without.
+
+    Parameters
+    ----------
+    start : bytes
+        136 or more.
+
+    Returns
+    -------
+    bool
+
+    Examples
+    --------
+    >>> looks_like_dicom(bytes(128) + b"DICM" + b"\x02\x00\x00\x00"), looks_like_dicom(bytes(136))
+    (True, False)
+    """
+    if start[128:132] == b"DICM":
+        return start[132:134] in (b"\x02\x00", b"\x08\x00", b"")
+    return len(start) >= 132 and start[:2] in (b"\x08\x00", b"\x02\x00") and start[3:4] == b"\x00"
 
 
 def list_files(folder: Path) -> tuple[list[Path], list[Finding]]:

@@ -19,6 +19,7 @@ from pydicom.filereader import read_dataset
 from pydicom.tag import BaseTag
 from pydicom.uid import ExplicitVRBigEndian, ImplicitVRLittleEndian
 
+from .file_list import looks_like_dicom
 from .file_refusals import corrupt, over_limit, refusing
 from .inflated import Inflated, open_dataset
 
@@ -78,28 +79,6 @@ class PixelPlace:
     is_float: bool
     inflated: int = 0
     items: tuple[tuple[int, int], ...] = ()
-
-
-def looks_like_dicom(start: bytes) -> bool:
-    r"""Whether a file's first bytes are those of DICOM, with its preamble or without.
-
-    Parameters
-    ----------
-    start : bytes
-        136 or more.
-
-    Returns
-    -------
-    bool
-
-    Examples
-    --------
-    >>> looks_like_dicom(bytes(128) + b"DICM" + b"\x02\x00\x00\x00"), looks_like_dicom(bytes(136))
-    (True, False)
-    """
-    if start[128:132] == b"DICM":
-        return start[132:134] in (b"\x02\x00", b"\x08\x00", b"")
-    return len(start) >= 132 and start[:2] in (b"\x08\x00", b"\x02\x00") and start[3:4] == b"\x00"
 
 
 def parse_file(path: Path, file: int) -> tuple[Dataset, PixelPlace | None] | None:

@@ -8,7 +8,7 @@ import pytest
 from dicom_series import head, refusal, save, series
 
 from cranio_nb.readers import read_ct
-from cranio_nb.readers.dicom.file_list import MAX_DEPTH, list_files
+from cranio_nb.readers.dicom.file_list import MAX_DEPTH, list_files, looks_like_dicom
 
 
 def test_empty_file_is_refused(tmp_path: Path) -> None:
@@ -56,3 +56,8 @@ def test_files_are_listed_by_name_down_to_a_depth(tmp_path: Path) -> None:
     files, findings = list_files(tmp_path / "scan")
     assert files == sorted(files) and len(files) == 2 * (MAX_DEPTH + 1)
     assert findings[0].values == {"folder too deep": 1}
+
+
+def test_a_mark_in_the_wrong_place_does_not_make_a_dicom_file() -> None:
+    assert looks_like_dicom(bytes(128) + b"DICM" + b"\x02\x00\x00\x00")
+    assert not looks_like_dicom(b"DICM" * 40)
