@@ -31,7 +31,7 @@ UNDEFINED_LENGTH = 0xFFFFFFFF
 # CT images, classic and multi-frame; some writers leave the class out
 CT_CLASSES = {"", "1.2.840.10008.5.1.4.1.1.2", "1.2.840.10008.5.1.4.1.1.2.1", "1.2.840.10008.5.1.4.1.1.2.2"}
 _FLOAT_PIXELS = (0x7FE00008, 0x7FE00009)
-_PIXELS = (*_FLOAT_PIXELS, 0x7FE00010)
+_PIXELS = frozenset({*_FLOAT_PIXELS, 0x7FE00010})
 _ITEM, _SEQUENCE_END = 0xFFFEE000, 0xFFFEE0DD
 _KEYWORDS = (
     "SOPClassUID Modality ImageType SeriesInstanceUID StudyInstanceUID SeriesNumber AcquisitionNumber InstanceNumber "
