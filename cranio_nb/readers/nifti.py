@@ -7,12 +7,21 @@ from collections.abc import Collection
 from typing import Any, BinaryIO, cast
 
 import numpy as np
-from zlib_ng import gzip_ng, zlib_ng
+from zlib_ng import gzip_ng
 
 from ..errors import InputRefused
 from ..grid import Affine
 from .load_report import Finding
-from .stored_image import GZIP_PACKING, Image, check_promise, check_shape, no_orientation, read_voxels, stored_bytes
+from .stored_image import (
+    GZIP_PACKING,
+    NOT_UNPACKED,
+    Image,
+    check_promise,
+    check_shape,
+    no_orientation,
+    read_voxels,
+    stored_bytes,
+)
 
 _MM_PER_UNIT = {0: 1.0, 1: 1000.0, 2: 1.0, 3: 1e-3}  # unknown, metre, mm, micrometre (xyzt_units & 7)
 _LPS = np.diag([-1.0, -1.0, 1.0, 1.0])  # NIfTI: x to the right, y to the front
@@ -62,7 +71,7 @@ def read_nifti(stream: BinaryIO, allow: Collection[str] = ()) -> Image:
         check_promise(count, size if packed else size - offset, packing=GZIP_PACKING if packed else 1)
         data.seek(offset)
         content, rest = read_voxels(data, count)
-    except (EOFError, OSError, zlib_ng.error) as error:
+    except NOT_UNPACKED as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
 
     # index -> LPS mm, and the scaling of the numbers

@@ -9,7 +9,7 @@ from typing import Any, BinaryIO, cast
 
 import numpy as np
 from numpy.typing import NDArray
-from zlib_ng import gzip_ng, zlib_ng
+from zlib_ng import gzip_ng
 
 from ..errors import InputRefused
 from ..grid import Affine
@@ -148,7 +148,7 @@ def _voxel_bytes(stream: BinaryIO, header: dict[str, Any], count: int) -> tuple[
         data = cast(BinaryIO, bz2.BZ2File(stream))
     try:
         return read_voxels(data, count)
-    except (EOFError, OSError, zlib_ng.error) as error:
+    except NOT_UNPACKED as error:
         raise _corrupt(f"it cannot be unpacked ({type(error).__name__})") from None
 
 

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import io
 from dataclasses import dataclass
-from typing import BinaryIO
+from typing import BinaryIO, cast
 
 from numpy.typing import NDArray
+from zlib_ng import zlib_ng
 
 from ..errors import InputRefused
 from ..grid import Affine
@@ -18,6 +19,8 @@ from .load_report import Finding
 MAX_VOXELS = 2**30
 MAX_BYTES = 2**31  # of voxels as stored
 GZIP_PACKING, BZIP2_PACKING = 1032, 10**6  # how many times smaller data become at most
+NOT_UNPACKED = (EOFError, OSError, cast(type[Exception], zlib_ng.error))
+"""What is raised where packed data are none, or are cut short."""
 _LARGE_BYTES, _EMPTY_PACKING = 2**28, 1000  # zeros are packed 1030 times, the largest mask of a skull 980 times
 _BLOCK = 2**24  # bytes read at once
 _MAX_REST_BYTES = 2**26  # bytes
