@@ -17,6 +17,7 @@ from .load_report import Finding
 from .stored_image import (
     BZIP2_PACKING,
     GZIP_PACKING,
+    NOT_UNPACKED,
     Image,
     check_promise,
     check_shape,

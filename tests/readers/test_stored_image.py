@@ -4,6 +4,7 @@ import gzip
 import io
 import tracemalloc
 import zlib
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -144,3 +145,21 @@ def test_the_limit_of_voxels_is_the_last_size_allowed() -> None:
 def test_a_mask_may_be_packed_as_well_as_its_packing_allows() -> None:
     """Masks of real skulls, mostly 0, take a thousandth of their size."""
     check_promise(353_000_000, 400_000, packing=GZIP_PACKING)
+
+
+@pytest.mark.parametrize("write", [write_nifti, write_nrrd], ids=["nii.gz", "nrrd"])
+@pytest.mark.parametrize("damage", ["cut", "block", "checksum"])
+def test_what_cannot_be_unpacked_is_said_to_be_so(damage: str, write: Callable[..., Path], tmp_path: Path) -> None:
+    path = write(tmp_path / ("a.nii.gz" if write is write_nifti else "a.nrrd"), *stored_head())
+    content = bytearray(path.read_bytes())
+    start = content.index(b"\x1f\x8b")  # of what is packed; its first block begins after ten bytes and a name
+    if damage == "cut":
+        del content[-20:]
+    elif damage == "block":
+        middle = (start + len(content)) // 2
+        content[middle : middle + 40] = bytes(b ^ 0xFF for b in content[middle : middle + 40])
+    else:
+        content[-8] ^= 1
+    path.write_bytes(content)
+    refused = file_refusal(path)
+    assert refused.code == "CorruptFile" and "cannot be unpacked" in refused.message
