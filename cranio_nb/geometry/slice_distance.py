@@ -34,22 +34,19 @@ def plane_distances(mask: NDArray[np.bool_], bound_px: float) -> NDArray[np.floa
     array([[[-1.,  1.,  2.,  3.,  3.]]])
     """
     out = np.where(mask, bound_px, -bound_px).astype(float)
+    bound = int(np.ceil(bound_px))
+    far = (bound + 1) ** 2  # no farther is looked
     # planes wholly of one kind have no edge: the bound holds there
     for k in np.flatnonzero(mask.any(axis=(1, 2)) & ~mask.all(axis=(1, 2))):
-        signed = _to_nearest(~mask[k], bound_px) - _to_nearest(mask[k], bound_px)
-        out[k] = np.clip(signed, -bound_px, bound_px)
+        for kind in (True, False):
+            # squared distances to the other kind along the rows' axis, and those added to it along the columns'
+            squares = np.where(mask[k] == kind, far, 0).astype(np.int32 if bound > 100 else np.int16)
+            for lines in (np.asarray, np.transpose):
+                known = lines(squares.copy())
+                near = lines(squares)
+                for step in range(1, min(bound, len(known) - 1) + 1):
+                    np.minimum(near[step:], known[:-step] + step**2, out=near[step:])
+                    np.minimum(near[:-step], known[step:] + step**2, out=near[:-step])
+            told = np.minimum(np.sqrt(squares, dtype=np.float64), bound_px)
+            np.copyto(out[k], told if kind else -told, where=mask[k] == kind)
     return out
-
-
-def _to_nearest(target: NDArray[np.bool_], bound_px: float) -> NDArray[np.float64]:
-    """Distance of each pixel to the nearest target, exact up to the bound, px: no farther is looked."""
-    bound = int(np.ceil(bound_px))
-    squares = np.where(target, 0, (bound + 1) ** 2).astype(np.int32 if bound > 100 else np.int16)
-    for axis in (0, 1):  # squared distances along one axis, and those added to it along the other
-        near = np.moveaxis(squares.copy(), axis, 0)
-        far = np.moveaxis(squares, axis, 0)
-        for step in range(1, min(bound, len(far) - 1) + 1):
-            np.minimum(near[step:], far[:-step] + step**2, out=near[step:])
-            np.minimum(near[:-step], far[step:] + step**2, out=near[:-step])
-        squares = np.moveaxis(near, 0, axis)
-    return np.sqrt(squares, dtype=np.float64)
