@@ -219,7 +219,8 @@ def build_stack(headers: list[SliceHeader]) -> Stack:
     """
     ordered, heights = sort_by_height(headers)
     if heights[-1] < SAME_PLACE_MM:
-        raise bad_geometry(f"All {len(headers)} slices lie at one position.")
+        many = f"All {len(headers)} slices lie at one position."
+        raise bad_geometry("The series holds a single slice." if len(headers) == 1 else many)
     cols, rows, normal = axes_of(_orientation(ordered[0]))
 
     # the line through the slices; what of it is not along the normal is the tilt of the gantry

@@ -249,3 +249,8 @@ def test_the_slice_farthest_off_the_line_is_named_with_its_distance() -> None:
 def test_a_lean_that_moves_the_highest_slice_is_kept(lean: float, heights: tuple[float, ...]) -> None:
     stack = build_stack([header(z, position=np.array([-3, 7 + lean * z, 100 + z])) for z in heights])
     np.testing.assert_allclose(stack.shear, [0, lean, 0], atol=1e-12)
+
+
+def test_a_single_slice_is_said_to_be_one(tmp_path: Path) -> None:
+    folder = save(tmp_path / "scan", series(head())[:1])
+    assert refusal(folder).message == "The series holds a single slice."
