@@ -13,6 +13,7 @@ from ..opening import Opening
 from ..readers import LoadReport, read_ct
 from ..stages.segmentation import threshold_of
 from ..vault.opening_choice import JudgedOpening
+from ..vault.opening_search import bone_around
 from ..vault.opening_size import OpeningSize
 from ..volume import Volume, same_grid
 from .input_digest import digest_volume
@@ -159,7 +160,8 @@ def prepare(
     numbers = {one.number for one in closed}
     left_open = tuple(one for one in seen.found if one.number not in numbers)
     clock.lap("bone and openings")
-    return Prepared(load, scan, seen.bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
+    bone = bone_around(seen.bone, scan, [one.opening for one in closed])
+    return Prepared(load, scan, bone, closed, left_open, threshold_of(scan, threshold), known, clock.seconds)
 
 
 def openings_to_close(

@@ -8,6 +8,7 @@ side by side belong to the same one. Nothing has to be clicked.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -35,6 +36,7 @@ from .verdict import Signs, judge
 
 _MIDDLE = 0.7  # of the distance from the rim to the innermost ray
 _ABOVE_MM, _BULGE = 2.0, 0.2  # by which bone may stand above the surface bridged from the rim; and for each mm to it
+_AROUND_MM = 12.0  # of the sheet of an opening: as thick as the vault is
 _WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
 
 
@@ -109,7 +111,7 @@ def survey_openings(
     grid = vertex_rays(bone, frame.trusted_axes)
     outermost = measure_outermost_bone(bone, grid)
     groups = open_rays(outermost, min_diameter_mm)
-    unfilled = _unfilled(bone, scan)
+    unfilled = unfilled_bone(bone, scan)
     seen = outermost if unfilled is bone else measure_outermost_bone(unfilled, grid)
     hints = hinted_rays(seen, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
     judged: list[JudgedOpening] = []
@@ -127,15 +129,61 @@ def survey_openings(
     return tuple(judged)
 
 
-def _unfilled(bone: Volume, scan: Volume | None) -> Volume:
-    """The bone without the pores of its slices that were filled: where a slice cuts the vault flat, a hole is one."""
+def unfilled_bone(bone: Volume, scan: Volume | None) -> Volume:
+    """The bone without the pores of its slices that were filled: where a slice cuts the vault flat, a hole is one.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    scan : Volume or None
+        HU or a bool mask on the same grid; without one the bone is taken as it is.
+
+    Returns
+    -------
+    Volume
+        Bool mask.
+    """
     if scan is None:
         return bone
     # only where there is bone, and without a second volume beside the result
     box, kept = bone.box(), np.zeros(bone.shape, bool)
-    np.greater_equal(scan.voxels[box], 1 if scan.voxels.dtype == bool else int(SOFT_HU), out=kept[box])
-    kept[box] &= bone.voxels[box]
+    solid = scan.voxels[box]
+    np.logical_and(bone.voxels[box], solid if solid.dtype == bool else solid >= int(SOFT_HU), out=kept[box])
     return bone.with_voxels(kept)
+
+
+def bone_around(bone: Volume, scan: Volume, openings: Sequence[Opening]) -> Volume:
+    """The bone that a method gets: an opening that was filled as a pore, where a slice cuts it flat, is open there.
+
+    Parameters
+    ----------
+    bone : Volume
+        Bool mask of the skull.
+    scan : Volume
+        HU or a bool mask on the same grid.
+    openings : sequence of Opening
+        Those to close.
+
+    Returns
+    -------
+    Volume
+        Bool mask; the same one where no such opening is closed.
+    """
+    filled = [opening.sheet for opening in openings if _meets(opening, bone)]
+    if not filled:
+        return bone
+    voxels, unfilled = bone.voxels.copy(), unfilled_bone(bone, scan)
+    for sheet in filled:
+        box = sheet.box(margin=np.ceil(_AROUND_MM / sheet.spacing))
+        voxels[box] = unfilled.voxels[box]
+    return bone.with_voxels(voxels)
+
+
+def _meets(opening: Opening, bone: Volume) -> bool:
+    """Whether the sheet of an opening lies in bone: seldom, for it keeps out of the bone it was found in."""
+    planes = slice(*opening.planes)
+    return bool((opening.sheet.voxels[planes] & bone.voxels[planes]).any())
 
 
 def _bridged_radius(outermost: OutermostBone, groups: list[NDArray[np.bool_]]) -> NDArray[np.float64]:

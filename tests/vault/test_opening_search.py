@@ -7,6 +7,7 @@ import pytest
 from scipy import ndimage
 
 from cranio_nb.errors import InputRefused, NoOpening
+from cranio_nb.methods.design import design
 from cranio_nb.stages.segmentation import bone_of
 from cranio_nb.vault import opening_search
 from cranio_nb.vault.head_frame import HeadFrame, find_head_frame
@@ -229,6 +230,22 @@ def test_a_hole_that_is_filled_as_a_pore_of_slices_that_cut_it_flat_is_named():
     assert [one.verdict for one in survey_openings(bone, scan=hu)] == [found.verdict]
 
 
+def test_the_bone_that_is_closed_is_open_where_a_chosen_opening_was_filled():
+    scan = holed_ball(8.4, 1.0, at_top=True)
+    bone = bone_of(scan)
+    (found,) = survey_openings(bone, scan=scan)
+    opened = opening_search.bone_around(bone, scan, [found.opening])
+    np.testing.assert_array_equal(opened.voxels, scan.voxels & bone.voxels)  # there is no other pore
+    made = design(opened, [found.opening])
+    hole = np.pi * 8.4**2 / 4 * WALL_MM
+    # a rim of pixels of 1.5 mm more or less
+    assert abs(made.patch.voxels.sum() * 2.25 - hole) < np.pi * 8.4 * WALL_MM * 0.75
+    # an opening that was not filled leaves the bone as it is
+    cut = holed_ball(30.0, 1.0)
+    openings = find_openings(cut)
+    assert opening_search.bone_around(cut, cut, openings) is cut
+
+
 def holed_ball(diameter_mm, slice_mm, *, at_top=False):
     """A hollow ball of 75 mm, its wall 6 mm, with a hole at its side or its top."""
     z, y, x = (np.arange(-84.0, 84.1, step) for step in (slice_mm, 1.5, 1.5))
@@ -372,15 +389,15 @@ def test_a_sheet_fills_the_opening_below_the_outer_surface_or_the_edge_of_the_im
 
 def test_pores_that_were_filled_are_those_that_the_scan_shows_soft():
     bone, _, _ = ball()
-    assert opening_search._unfilled(bone, None) is bone
+    assert opening_search.unfilled_bone(bone, None) is bone
     before = bone.voxels.copy()
     hu = np.full(bone.shape, 1000, np.int16)
     soft = np.argwhere(bone.voxels)[::5]
     hu[tuple(soft.T)], hu[tuple(soft[::2].T)] = 150, 149
-    kept = opening_search._unfilled(bone, bone.with_voxels(hu))
+    kept = opening_search.unfilled_bone(bone, bone.with_voxels(hu))
     np.testing.assert_array_equal(kept.voxels, bone.voxels & (hu >= 150))
     mask = bone.with_voxels(hu >= 150)
-    np.testing.assert_array_equal(opening_search._unfilled(bone, mask).voxels, kept.voxels)
+    np.testing.assert_array_equal(opening_search.unfilled_bone(bone, mask).voxels, kept.voxels)
     np.testing.assert_array_equal(bone.voxels, before)
 
 
