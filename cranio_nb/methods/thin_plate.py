@@ -38,10 +38,9 @@ from typing import Annotated, Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage, sparse
-from scipy.sparse.linalg import splu
 
 from ..errors import InputRefused
-from ..geometry import voxel_pieces
+from ..geometry import symmetric_system, voxel_pieces
 from ..opening import Opening
 from ..options import Option
 from ..prior.around_opening import predict_around
@@ -201,8 +200,7 @@ def _settle(stiffness: sparse.csr_array, push: Array, data: Array, sure: Array) 
     for hold in _HOLDS:  # first a stiff plate, which no stray bone can bend
         # (S + w) g = w f + push, the zero of the energy's slope
         held = (stiffness + sparse.diags_array(hold * weight + _FAINT)).tocsc()
-        factors = splu(held, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        g = factors.solve(hold * weight * data + push)
+        g = symmetric_system.solve(held, hold * weight * data + push)
         # Cauchy's weights at three standard deviations, these from the median
         residual = np.abs(g - data) * np.sqrt(sure)
         spread = max(1.4826 * float(np.median(residual[sure > 0])), _LEAST_SPREAD)

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 from skimage.morphology import convex_hull_image
 
-from .task import Answer, Exercise, different_pixels, small_head
+from .task import Answer, Exercise, different_bools, different_pixels, small_head
 
 _CORNERS = np.ones((3, 3), bool)  # pixels that touch at a corner belong together
 _SIDES = ndimage.generate_binary_structure(2, 1)
@@ -189,7 +189,7 @@ EXERCISES: dict[str, Exercise] = {
     "5.2": Exercise(
         cases=_regions,
         right=lambda region, bone: region & ~bone,
-        answer=Answer("a mask like the ones given", unit="pixels", tolerance=0.0, error=different_pixels),
+        answer=Answer("a bool mask like the ones given", unit="pixels", tolerance=0.0, error=different_bools),
         mistakes=(
             (lambda r, b: r, "Bone is still in it: a prosthesis cannot be where the bone is."),
             (

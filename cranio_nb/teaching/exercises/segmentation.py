@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 from scipy import ndimage
 
-from .task import Answer, Exercise, different_pixels, small_head
+from .task import Answer, Exercise, different_bools, small_head
 
 
 def _largest(mask):
@@ -57,11 +57,6 @@ def _parts():
     blocks[0, 0:2, 15:18] = True  # met first, alone in its slice
     blocks[5, 15:18, 15:18] = True  # met last, alone in its slice
     return [(couch,), (early,), (blocks,)]
-
-
-def _bool_pixels(answer, right):
-    """Number of pixels in which two masks differ; what is not bool is no mask."""
-    return different_pixels(answer, right) if np.asarray(answer).dtype == bool else np.inf
 
 
 _FOUR = (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1])  # first, last row; first, last column
@@ -135,7 +130,7 @@ EXERCISES: dict[str, Exercise] = {
     "2.1": Exercise(
         cases=_parts,
         right=_largest,
-        answer=Answer("a bool mask like the one given", unit="voxels", tolerance=0.0, error=_bool_pixels),
+        answer=Answer("a bool mask like the one given", unit="voxels", tolerance=0.0, error=different_bools),
         mistakes=(
             (lambda m: ndimage.label(m)[0] == 1, "Label 1 is the part that is met first, not the largest."),
             (
@@ -191,7 +186,7 @@ EXERCISES: dict[str, Exercise] = {
     "2.2": Exercise(
         cases=_rings,
         right=_fill_small,
-        answer=Answer("a bool mask like the one given", unit="pixels", tolerance=0.0, error=_bool_pixels),
+        answer=Answer("a bool mask like the one given", unit="pixels", tolerance=0.0, error=different_bools),
         mistakes=(
             (lambda m, a: ndimage.binary_fill_holes(m), "This fills the brain's place as well: fill only small holes."),
             (lambda m, a: m, "No hole was filled: holes are parts of ~mask. Was `mask` labelled, the bone?"),

@@ -80,6 +80,27 @@ def different_pixels(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
     return float(np.count_nonzero(a.astype(bool) ^ right))
 
 
+def different_bools(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
+    """Number of pixels in which two masks differ, where only bool will do: `~` of the number 1 is -2.
+
+    Parameters
+    ----------
+    answer : array_like
+    right : ndarray of bool
+
+    Returns
+    -------
+    float
+        inf where the answer is no bool mask of that shape.
+
+    Examples
+    --------
+    >>> different_bools([True, False], np.ones(2, bool)), different_bools([1, 1], np.ones(2, bool))
+    (1.0, inf)
+    """
+    return different_pixels(answer, right) if np.asarray(answer).dtype == bool else float("inf")
+
+
 def degrees_apart(answer: ArrayLike, right: ArrayLike) -> float:
     """Angle between two directions, whichever way they point.
 

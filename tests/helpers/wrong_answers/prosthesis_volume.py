@@ -59,7 +59,8 @@ WRONG = {
         ("return ndimage.binary_erosion(region) & ~bone", "no erosion"),
         ("return ndimage.binary_dilation(region) & ~bone", "no dilation"),
         ("return region & ~region", "The function does not use `bone`"),
-        ("return np.where(bone, region, 0)", "This is just the part that must go"),
+        ("return (region & ~bone).astype(int)", "as numbers: a bool mask is wanted"),
+        ("return np.where(bone, region, False)", "This is just the part that must go"),
     ],
     "5.3": [
         ("return convex_hull_image(bone) & ~bone", "whole difference"),

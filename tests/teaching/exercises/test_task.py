@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cranio_nb.teaching.exercises import EXERCISES
-from cranio_nb.teaching.exercises.task import Exercise, degrees_apart, different_pixels, small_head
+from cranio_nb.teaching.exercises.task import Exercise, degrees_apart, different_bools, different_pixels, small_head
 
 
 @pytest.mark.parametrize("name", EXERCISES)
@@ -38,6 +38,7 @@ def test_pixels_that_differ_are_counted_whatever_the_type():
     other[3, :7] ^= True
     assert different_pixels(other, mask) == different_pixels(other.astype(float), mask) == 7
     assert different_pixels(other[1:], mask) == np.inf
+    assert different_bools(other, mask) == 7 and different_bools(other.astype(int), mask) == np.inf
 
 
 def test_the_head_of_the_exercises_cannot_be_changed():
