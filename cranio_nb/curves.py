@@ -238,6 +238,12 @@ def cubic(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> Po
     return np.stack([length * s, height], axis=-1)
 
 
+def _gauss(n_nodes: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Places and weights of Gauss's quadrature from 0 to 1."""
+    places, weights = np.polynomial.legendre.leggauss(n_nodes)
+    return (places + 1) / 2, weights / 2
+
+
 def spiral(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> tuple[Points, NDArray[np.float64]]:
     """Euler spiral between two end tangents: curvature linear in arc length, an exact arc where the ends agree.
 
@@ -262,8 +268,7 @@ def spiral(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> t
     length = np.asarray(length, float)[..., None]
     a0 = np.asarray(theta0, float)[..., None]
     a1 = np.asarray(theta1, float)[..., None] - np.pi
-    t, w = np.polynomial.legendre.leggauss(24)
-    t, w = (t + 1) / 2, w / 2
+    t, w = _gauss(24)
     bend = 3 * (a0 + a1)
     for _ in range(8):
         heading = a0 + (a1 - a0 - bend) * t + bend * t**2
@@ -272,7 +277,8 @@ def spiral(length: ArrayLike, theta0: ArrayLike, theta1: ArrayLike, n: int) -> t
         bend = bend - miss / slope
     # the length of the curve, and its points by integration of the heading from one to the next
     total = length / (w * np.cos(a0 + (a1 - a0 - bend) * t + bend * t**2)).sum(-1, keepdims=True)
-    s = np.linspace(0, 1, n)
+    # eight nodes a step: exact to rounding where a step turns by less than a radian
+    s, (t, w) = np.linspace(0, 1, n), _gauss(8)
     steps = s[:-1, None] + t * (s[1] - s[0])
     heading = a0[..., None] + (a1 - a0 - bend)[..., None] * steps + bend[..., None] * steps**2
     walk = np.stack([(w * np.cos(heading)).sum(-1), (w * np.sin(heading)).sum(-1)], axis=-1) * (s[1] - s[0])

@@ -10,6 +10,7 @@ radius per ray, a hole is a region, and a prosthesis is a pair of radii.
 from __future__ import annotations
 
 from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +74,7 @@ class RayGrid:
         v, u = self.offsets
         return np.hypot(u, v)
 
-    @property
+    @cached_property
     def directions(self) -> Array:
         """Unit vector of each ray.
 
@@ -85,7 +86,9 @@ class RayGrid:
         v, u = self.offsets
         polar = np.hypot(u, v)
         scale = np.sinc(polar / np.pi)  # sin(angle) / angle
-        return np.stack([u * scale, v * scale, np.cos(polar)], axis=-1) @ self.axes
+        found = np.stack([u * scale, v * scale, np.cos(polar)], axis=-1) @ self.axes
+        found.setflags(write=False)  # asked for again and again
+        return np.asarray(found)
 
     def points(self, radius: Array) -> Array:
         """Points at a radius along each ray.
