@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 
 def plane_distances(mask: NDArray[np.bool_], bound_px: float) -> NDArray[np.float64]:
@@ -21,7 +20,7 @@ def plane_distances(mask: NDArray[np.bool_], bound_px: float) -> NDArray[np.floa
     mask : ndarray of bool, shape (P, R, C)
         Goes on beyond the sides of a plane as it is there.
     bound_px : float
-        Largest distance told.
+        Largest distance told; what it costs grows with it.
 
     Returns
     -------
@@ -37,6 +36,20 @@ def plane_distances(mask: NDArray[np.bool_], bound_px: float) -> NDArray[np.floa
     out = np.where(mask, bound_px, -bound_px).astype(float)
     # planes wholly of one kind have no edge: the bound holds there
     for k in np.flatnonzero(mask.any(axis=(1, 2)) & ~mask.all(axis=(1, 2))):
-        signed = ndimage.distance_transform_edt(mask[k]) - ndimage.distance_transform_edt(~mask[k])
+        signed = _to_nearest(~mask[k], bound_px) - _to_nearest(mask[k], bound_px)
         out[k] = np.clip(signed, -bound_px, bound_px)
     return out
+
+
+def _to_nearest(target: NDArray[np.bool_], bound_px: float) -> NDArray[np.float64]:
+    """Distance of each pixel to the nearest target, exact up to the bound, px: no farther is looked."""
+    bound = int(np.ceil(bound_px))
+    squares = np.where(target, 0, (bound + 1) ** 2).astype(np.int32 if bound > 100 else np.int16)
+    for axis in (0, 1):  # squared distances along one axis, and those added to it along the other
+        near = np.moveaxis(squares.copy(), axis, 0)
+        far = np.moveaxis(squares, axis, 0)
+        for step in range(1, min(bound, len(far) - 1) + 1):
+            np.minimum(near[step:], far[:-step] + step**2, out=near[step:])
+            np.minimum(near[:-step], far[step:] + step**2, out=near[:-step])
+        squares = np.moveaxis(near, 0, axis)
+    return np.sqrt(squares, dtype=np.float64)

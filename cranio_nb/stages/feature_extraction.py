@@ -72,11 +72,14 @@ def extract_features(bone: NDArray[np.bool_], *, min_part: float = 0.03) -> Slic
     """
     if not bone.any():
         raise SliceProblem("NoBoneInSlice", "The slice holds no bone.")
-    bone = _large_parts(bone, min_part)
-    padded = np.pad(bone, 1)  # bone at the edge of the slice has its boundary there
+    # no more of the slice than the box of its bone
+    box = ndimage.find_objects(bone.astype(np.uint8))[0]
+    origin = np.array([side.start for side in box])
+    bone = _large_parts(bone[box], min_part)
+    padded = np.pad(bone, 1)  # bone at the edge of the box has its boundary there
 
     # boundary B: bone with a pixel beside it that is none
-    boundary = np.argwhere(bone & ~ndimage.binary_erosion(padded)[1:-1, 1:-1])
+    boundary = np.argwhere(bone & ~ndimage.binary_erosion(padded)[1:-1, 1:-1]) + origin
 
     # skeleton, and in each of its parts the spine, longest first; parts of up to 3 pixels have none
     thin = skeletonize(padded)[1:-1, 1:-1]
@@ -84,10 +87,10 @@ def extract_features(bone: NDArray[np.bool_], *, min_part: float = 0.03) -> Slic
     labels, n_parts = ndimage.label(thin, _EIGHT)
     paths = [find_longest_path(np.argwhere(labels == part)) for part in range(1, n_parts + 1)]
     trimmed = [_without_forks(path, depth) for path in paths]
-    spines = tuple(sorted((spine for spine in trimmed if len(spine) > 3), key=len, reverse=True))
+    spines = tuple(sorted((spine + origin for spine in trimmed if len(spine) > 3), key=len, reverse=True))
 
     # convex hull S of the skeleton; a straight line has none
-    points = np.argwhere(thin)
+    points = np.argwhere(thin) + origin
     if not spines or np.linalg.matrix_rank(points - points[0]) < 2:
         raise SliceProblem("NoSkeleton", "The bone of the slice is too small to have a spine.")
     return SliceFeatures(boundary.astype(float), spines, ConvexHull(points).equations, _is_ring(bone))
