@@ -66,7 +66,9 @@ def verdict(kernels: list[str], passed: list[int]) -> int:
 
 
 def environment(kernel: str, threads: int) -> dict[str, str]:
-    return os.environ | {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": str(threads)}
+    asked = {"OPENBLAS_CORETYPE": kernel, "OPENBLAS_NUM_THREADS": str(threads)}
+    # plugins of pytest for notebooks and the like take longer to load than half of the tests to run
+    return os.environ | asked | {"PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}
 
 
 def run_alone(kernel: str, threads: int) -> int:

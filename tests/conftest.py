@@ -1,6 +1,11 @@
 """Where the tests find real scans, and how they say that there are none; phantoms and shapes that many tests share."""
 
 import os
+
+# before NumPy is loaded, for this process and those it starts: threads that wait for each other in many small products
+# take a third more of the processors' time; benchmarks/kernels.py runs the numerics with one and with two
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path

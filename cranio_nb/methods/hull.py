@@ -119,11 +119,10 @@ def _hull_radius(radius_map: RadiusMap, radius: NDArray[np.float64]) -> NDArray[
 
 def _leaves(rays: NDArray[np.float64], facets: NDArray[np.float64]) -> NDArray[np.float64]:
     """Where rays from the origin (n, 3) leave the polyhedron of `facets` (F, 4), shape (n,); nan if at once."""
-    # a ray t d leaves the facet n x + b = 0 at t = -b / (n d); it is inside until the first
-    lean = rays @ facets[:, :3].T
-    with np.errstate(divide="ignore", invalid="ignore"):
-        length = np.where(lean > 1e-9, -facets[:, 3] / lean, np.inf).min(axis=1)
-    return np.where((length > 1.0) & np.isfinite(length), length, np.nan)
+    # a ray t d leaves the facet n x + b = 0 at t = -b / (n d); the first has the greatest n d / -b,
+    # above 0 as the polyhedron has an end everywhere; a ray over a facet that the origin lies on leaves at once
+    inverse = (rays @ (facets[:, :3] / np.maximum(-facets[:, 3:], 1e-9)).T).max(axis=1)
+    return np.where(inverse < 1.0, 1 / inverse, np.nan)
 
 
 def _by_slices(bone: Volume, opening: Opening) -> tuple[HullDesign, NDArray[np.bool_]]:

@@ -3,6 +3,7 @@
 import json
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -73,16 +74,9 @@ def method(request):
 
 
 @pytest.fixture(scope="module")
-def designed(method, skull):
+def designed(method, skull, openings):
     """`designed(defect)`: the prosthesis of a tiny phantom's skull, made once for each method."""
-    made = {}
-
-    def make(defect):
-        if defect not in made:
-            made[defect] = run(method, skull(defect))
-        return made[defect]
-
-    return make
+    return cache(lambda defect: run(method, skull(defect), openings(defect)))
 
 
 def run(method, bone, openings=None):
@@ -91,6 +85,57 @@ def run(method, bone, openings=None):
 
 def dice(a, b):
     return 2 * (a & b).sum() / (a.sum() + b.sum())
+
+
+# Skulls that every method closes, with their openings: found once. That a design finds the same for itself is stated by
+# `test_parameters_are_all_there_is_to_know`.
+
+
+def with_openings(bone):
+    return bone, find_openings(bone)
+
+
+@pytest.fixture(scope="module")
+def mirrored(skull):
+    bone = skull("unilateral")
+    return with_openings(Volume(bone.voxels[:, :, ::-1].copy(), bone.affine))
+
+
+@pytest.fixture(scope="module")
+def turned(skull):
+    """A skull on oblique axes, its openings, and the move that its header made."""
+    x, z = np.radians(24), np.radians(-17)
+    about_x = np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
+    about_z = np.array([[np.cos(z), -np.sin(z), 0], [np.sin(z), np.cos(z), 0], [0, 0, 1]])
+    move = np.eye(4)
+    move[:3, :3], move[:3, 3] = about_x @ about_z, (311.0, -47.5, 905.0)
+    bone = skull("burr_hole")
+    return *with_openings(Volume(bone.voxels, move @ bone.affine)), move
+
+
+@pytest.fixture(scope="module")
+def two_holes():
+    case = phantom_case("tiny", "bilateral", 0, diameter=24.0)
+    return case, *with_openings(Volume(case.bone, case.affine))
+
+
+@pytest.fixture(scope="module")
+def widened(phantom):
+    case = phantom("burr_hole")
+    head = with_wider_hole(case, 24.0)
+    return with_openings(Volume(scan(head, case.affine, case.bone.shape)[1], case.affine))
+
+
+@pytest.fixture(scope="module")
+def finer(phantom):
+    """Voxels of half the size: the skull, its openings, and the bone that is missing."""
+    case = phantom("round")
+    step = np.array([2.0, 2, 2])
+    affine = case.affine.copy()
+    affine[:3, :3] /= step
+    affine[:3, 3] -= affine[:3, :3] @ [0.5, 0.5, 0.5]
+    _, bone, implant = scan(case.head, affine, tuple(2 * n for n in case.bone.shape))
+    return *with_openings(Volume(bone, affine)), implant
 
 
 def with_wider_hole(case, diameter):
@@ -141,21 +186,15 @@ def test_the_sides_look_out_in_and_at_the_bone(defect, designed, openings):
     assert away[made.sides == OUTER].mean() > away[made.sides == INNER].mean() + 2  # bone is 6 to 10 mm thick
 
 
-def test_a_mirrored_skull_gets_the_mirrored_patch(method, designed, skull):
-    bone = skull("unilateral")
-    mirrored = run(method, Volume(bone.voxels[:, :, ::-1].copy(), bone.affine)).patch.voxels[:, :, ::-1]
-    assert dice(mirrored, designed("unilateral").patch.voxels) > method.mirror
+def test_a_mirrored_skull_gets_the_mirrored_patch(method, designed, mirrored):
+    mirrored_back = run(method, *mirrored).patch.voxels[:, :, ::-1]
+    assert dice(mirrored_back, designed("unilateral").patch.voxels) > method.mirror
 
 
-def test_a_turned_and_moved_header_turns_and_moves_the_mesh(method, designed, skull):
+def test_a_turned_and_moved_header_turns_and_moves_the_mesh(method, designed, turned):
     """Oblique axes: the voxels' answer stays, the mesh goes with the header."""
-    x, z = np.radians(24), np.radians(-17)
-    about_x = np.array([[1, 0, 0], [0, np.cos(x), -np.sin(x)], [0, np.sin(x), np.cos(x)]])
-    about_z = np.array([[np.cos(z), -np.sin(z), 0], [np.sin(z), np.cos(z), 0], [0, 0, 1]])
-    move = np.eye(4)
-    move[:3, :3], move[:3, 3] = about_x @ about_z, (311.0, -47.5, 905.0)
-    here, bone = designed("burr_hole"), skull("burr_hole")
-    there = run(method, Volume(bone.voxels, move @ bone.affine))
+    *skull_and_openings, move = turned
+    here, there = designed("burr_hole"), run(method, *skull_and_openings)
     np.testing.assert_array_equal(there.patch.voxels, here.patch.voxels)
     np.testing.assert_array_equal(there.mesh.faces, here.mesh.faces)
     np.testing.assert_allclose(there.mesh.vertices, here.mesh.vertices @ move[:3, :3].T + move[:3, 3], atol=1e-3)
@@ -176,10 +215,8 @@ def test_a_whole_skull_needs_none(method, phantom):
     assert refused.value.exit_code == 4
 
 
-def test_two_holes_get_the_union_of_their_patches(method):
-    case = phantom_case("tiny", "bilateral", 0, diameter=24.0)
-    bone = Volume(case.bone, case.affine)
-    found = find_openings(bone)
+def test_two_holes_get_the_union_of_their_patches(method, two_holes):
+    case, bone, found = two_holes
     assert len(found) == 2
     both = run(method, bone, found)
     single = [run(method, bone, (opening,)).patch.voxels for opening in found]
@@ -189,34 +226,27 @@ def test_two_holes_get_the_union_of_their_patches(method):
     assert scores.dice(both.patch, truth) > method.dice[1]
 
 
-def test_a_wider_hole_gets_no_smaller_patch(method, designed, phantom):
-    case = phantom("burr_hole")
-    head = with_wider_hole(case, 24.0)
-    wide = run(method, Volume(scan(head, case.affine, case.bone.shape)[1], case.affine)).patch.voxels
+def test_a_wider_hole_gets_no_smaller_patch(method, designed, widened):
+    wide = run(method, *widened).patch.voxels
     narrow = designed("burr_hole").patch.voxels
     assert wide.sum() > narrow.sum()
     assert (narrow & wide).sum() > method.nested * narrow.sum()
 
 
-def test_the_error_falls_with_the_voxels(method, designed, phantom):
+def test_the_error_falls_with_the_voxels(method, designed, phantom, request):
     if not method.improves:
         pytest.skip("its error does not come from the voxels: see its line in METHODS")
-    case = phantom("round")
-    step = np.array([2.0, 2, 2])
-    affine = case.affine.copy()
-    affine[:3, :3] /= step
-    affine[:3, 3] -= affine[:3, :3] @ [0.5, 0.5, 0.5]
-    _, bone, implant = scan(case.head, affine, tuple(2 * n for n in case.bone.shape))
-    fine = run(method, Volume(bone, affine)).patch
+    *skull_and_openings, implant = request.getfixturevalue("finer")
+    fine = run(method, *skull_and_openings).patch
     errors = [
         scores.assd(patch, Volume(truth, patch.affine))
-        for patch, truth in ((designed("round").patch, case.implant), (fine, implant))
+        for patch, truth in ((designed("round").patch, phantom("round").implant), (fine, implant))
     ]
     assert errors[1] < 0.75 * errors[0]
 
 
 def test_parameters_are_all_there_is_to_know(method, designed, skull):
-    """They survive JSON, and design the same prosthesis again, bit for bit."""
+    """They survive JSON, and design the same prosthesis again, bit for bit, where openings are found by the design."""
     made = designed("burr_hole")
     parameters = json.loads(json.dumps(made.parameters))
     assert parameters == made.parameters
@@ -247,11 +277,11 @@ def test_the_bone_is_not_modified(method, designed, phantom):
     np.testing.assert_array_equal(phantom("burr_hole").affine, before.affine)
 
 
-def test_progress_only_goes_forward(method, skull):
+def test_progress_only_goes_forward(method, skull, openings):
     told = []
-    bone = skull("burr_hole")
     design(
-        bone,
+        skull("burr_hole"),
+        openings("burr_hole"),
         method=method.name,
         preset=method.preset,
         progress=lambda stage, done: told.append((stage, done)),

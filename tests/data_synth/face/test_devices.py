@@ -1,5 +1,7 @@
 """What surrounds a head: where it lies, what it is made of, and that it never replaces bone or tissue."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -8,9 +10,15 @@ from data_synth import AROUND, Pose, face_case
 OPTIONS = {"size": "tiny", "seed": 2, "noise": 0.0, "blur_mm": 0.0}
 
 
+@cache
+def beside(*names, reach="vault"):
+    """A head with a hole, and what is named around it."""
+    return face_case(**OPTIONS, holes="round", around=names, reach=reach)
+
+
 @pytest.fixture(scope="module")
 def plain():
-    return face_case(**OPTIONS, holes="round")
+    return beside()
 
 
 def heights(case):
@@ -23,8 +31,8 @@ def heights(case):
 @pytest.mark.parametrize("name", AROUND)
 def test_a_device_changes_the_picture_but_not_the_truth(plain, name):
     reach = "neck" if name == "tube" else "vault"
-    plain = face_case(**OPTIONS, holes="round", reach=reach) if name == "tube" else plain
-    case = face_case(**OPTIONS, holes="round", around=[name], reach=reach)
+    plain = beside(reach=reach) if name == "tube" else plain
+    case = beside(name, reach=reach)
     np.testing.assert_array_equal(case.bone, plain.bone)
     np.testing.assert_array_equal(case.implant, plain.implant)
     assert (case.hu != plain.hu).sum() > 5
@@ -33,7 +41,7 @@ def test_a_device_changes_the_picture_but_not_the_truth(plain, name):
 
 @pytest.mark.parametrize("name", ["holder", "couch", "mask"])
 def test_shells_stay_in_the_air(plain, name):
-    case = face_case(**OPTIONS, holes="round", around=[name])
+    case = beside(name, reach="vault")
     changed = case.hu != plain.hu
     assert plain.hu[changed].max() <= 60
     if name != "mask":
@@ -49,7 +57,7 @@ def test_the_holder_lies_under_the_head_however_it_lies(pose):
 
 
 def test_the_ring_is_closed_and_bright(plain):
-    case = face_case(**OPTIONS, holes="round", around=["ring"])
+    case = beside("ring", reach="vault")
     _, p = heights(case)
     bright = p[(case.hu > 2500) & (plain.hu < 100)]
     around = np.hypot(bright[:, 0], bright[:, 1] - 3.0)
