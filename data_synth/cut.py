@@ -179,11 +179,15 @@ def _find_vault(bone: Mask, affine: Array) -> _Vault:
 
 def _main_parts(solid: Mask) -> Mask:
     """The large connected pieces: a sawn skull has two, a table or a head holder is smaller."""
-    labels, count = ndimage.label(solid)
-    if count == 0:
+    hits = [np.flatnonzero(solid.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
+    if not len(hits[0]):
         raise ValueError("There is no bone in this scan.")
-    sizes = np.bincount(labels.ravel())[1:]
-    return np.r_[False, sizes > 0.2 * sizes.max()][labels]
+    box = tuple(slice(hit[0], hit[-1] + 1) for hit in hits)
+    labels, _ = ndimage.label(solid[box])
+    sizes = np.bincount(labels[solid[box]])[1:]
+    kept = np.zeros(solid.shape, bool)
+    kept[box] = np.r_[False, sizes > 0.2 * sizes.max()][labels]
+    return kept
 
 
 def _across(direction: Array) -> Array:
