@@ -34,7 +34,7 @@ DESIGNS: tuple[tuple[str, str, dict[str, Any]], ...] = (
     *((method, "paper", {}) for method in ("slicewise", "hull", "reflection")),
 )
 VARIANTS: tuple[tuple[str, str, str, dict[str, Any]], ...] = (
-    ("burr_hole", "dnurbs", "default", {"free_weights": True}),  # minutes on a wider hole
+    ("burr_hole", "dnurbs", "default", {"free_weights": True}),
     ("unilateral", "slicewise", "default", {"axial": True}),
     ("unilateral", "slicewise", "default", {"directions": 1}),
     ("unilateral", "thin-plate", "default", {"smooth": False}),

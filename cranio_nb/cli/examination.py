@@ -15,8 +15,8 @@ from ..drawing.front_end import proxy
 from ..teaching.shipped import install_command
 
 _NEEDED = tuple(
-    "numpy scipy scikit-image pydicom pyjpegls pylibjpeg-openjpeg imagecodecs nibabel pynrrd zlib-ng trimesh "
-    "networkx lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
+    "numpy scipy threadpoolctl scikit-image pydicom pyjpegls pylibjpeg-openjpeg imagecodecs nibabel pynrrd zlib-ng "
+    "trimesh networkx lxml manifold3d cloudpickle click rich matplotlib pillow jinja2".split()
 )
 _OPTIONAL = {
     "lab": ("jupyterlab", "anywidget", "jupyterlab-widgets", "ipykernel", "jupytext", "nbclient"),

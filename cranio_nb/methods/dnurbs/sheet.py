@@ -24,9 +24,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.interpolate import BSpline
-from scipy.sparse.linalg import spsolve
+
+from .band import band_of, band_solver
 
 _DEGREE = 3
+LOCAL = (_DEGREE + 1) ** 2
+"""Control points that move a span."""
 _GAUSS = 4  # points a span: exact for products of two cubics
 _LEAST_DOUBT = 0.3  # mm off the sheet that no spring is weakened for
 
@@ -149,19 +152,22 @@ def basis(x: NDArray[np.float64], spans: int, derivative: int = 0) -> sparse.csr
     Returns
     -------
     sparse array, shape (k, spans + 3)
+        Four entries side by side in each row, zeros among them.
     """
     # clamped: the end knots repeat, so that the sheet ends at its outer control points
     knots = np.concatenate([np.zeros(_DEGREE), np.arange(spans + 1.0), np.full(_DEGREE, spans)])
-    splines = None
+    lower = BSpline.design_matrix(x, knots[derivative : len(knots) - derivative], _DEGREE - derivative)
+    values = lower.data.reshape(len(x), -1)
+    first = lower.indices.reshape(values.shape)[:, :1]
     # B'_i = p (B_i / (t_i+p - t_i) - B_i+1 / (t_i+p+1 - t_i+1)) of one degree less, as often as asked
-    for degree in range(_DEGREE, _DEGREE - derivative, -1):
-        width = knots[degree + 1 : -1] - knots[1 : -degree - 1]
-        n = len(width)
-        slope = sparse.diags_array([-degree / width, degree / width], offsets=[0, 1], shape=(n, n + 1))
-        splines = slope if splines is None else slope @ splines
-        knots = knots[1:-1]
-    lower = sparse.csr_array(BSpline.design_matrix(x, knots, _DEGREE - derivative))
-    return lower if splines is None else sparse.csr_array(lower @ splines)
+    for degree in range(_DEGREE - derivative + 1, _DEGREE + 1):
+        own = knots[_DEGREE - degree : len(knots) - _DEGREE + degree]
+        width = own[degree + 1 : -1] - own[1 : -degree - 1]
+        slope = degree * values / width[first + np.arange(degree)]
+        values = np.pad(slope, ((0, 0), (1, 0))) - np.pad(slope, ((0, 0), (0, 1)))
+    columns = first + np.arange(_DEGREE + 1)
+    rows = np.arange(0, columns.size + 1, _DEGREE + 1)
+    return sparse.csr_array((values.ravel(), columns.ravel(), rows), shape=(len(x), spans + _DEGREE))
 
 
 def tensor(
@@ -181,16 +187,21 @@ def tensor(
     Returns
     -------
     sparse array, shape (k, n m)
+        `LOCAL` entries in each row, zeros among them: the same columns for all places of a span, whatever the
+        derivative.
     """
     # row by row the outer product of two sparse rows
     along_v, along_u = (basis(x, n, d) for x, n, d in zip((v, u), spans, derivative, strict=True))
-    rows = np.repeat(np.arange(len(v)), np.diff(along_v.indptr))
-    right = along_u[rows]  # a copy of the row along u for every entry along v
-    per_entry = np.diff(right.indptr)
-    columns = np.repeat(along_v.indices, per_entry) * along_u.shape[1] + right.indices
-    values = np.repeat(along_v.data, per_entry) * right.data
-    at = np.repeat(rows, per_entry)
-    return sparse.csr_array((values, (at, columns)), shape=(len(v), along_v.shape[1] * along_u.shape[1]))
+    (at_v, at_u), (by_v, by_u) = (
+        [getattr(part, name).reshape(len(v), _DEGREE + 1) for part in (along_v, along_u)]
+        for name in ("indices", "data")
+    )
+    columns = at_v[:, :, None] * along_u.shape[1] + at_u[:, None, :]
+    values = by_v[:, :, None] * by_u[:, None, :]
+    rows = np.arange(0, columns.size + 1, LOCAL)
+    return sparse.csr_array(
+        (values.ravel(), columns.ravel(), rows), shape=(len(v), along_v.shape[1] * along_u.shape[1])
+    )
 
 
 def scale_rows(matrix: sparse.csr_array, by: NDArray) -> sparse.csr_array:
@@ -321,4 +332,4 @@ def _solved(
     """Control points, shape (n m, 3), that balance springs and bending."""
     # (K + P^T k P) t = P^T k d: the energy's slope is zero
     pull = scale_rows(places, strength).T
-    return np.asarray(spsolve(sparse.csc_array(bent + pull @ places), pull @ pulled, permc_spec="MMD_AT_PLUS_A"))
+    return band_solver(band_of(bent + pull @ places))(pull @ pulled)

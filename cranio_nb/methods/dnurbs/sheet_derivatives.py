@@ -1,4 +1,4 @@
-"""A rational sheet -> its basis functions, its derivatives, and its Jacobian by control points and weights.
+"""A rational sheet -> its basis functions and its derivatives, along it and by control points and weights.
 
 Frame: as in `sheet`. With the B-splines B_i of all control points and W = sum w B,
 
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from .sheet import BY_U, BY_UU, BY_V, BY_VU, BY_VV, VALUE, Sheet, scale_rows, tensor
+from .sheet import BY_U, BY_UU, BY_V, BY_VU, BY_VV, LOCAL, VALUE, Sheet, tensor
 
 Pair = tuple[int, int]
 
@@ -83,15 +83,14 @@ def rational_basis(
     >>> (basis[0, 0] @ weights.ravel()).round(9)
     array([1.])
     """
-    found: dict[Pair, sparse.csr_array] = {}
+    # all kinds have their entries in the same columns, so that arrays of entries are enough
     below = {d: part @ weights.ravel() for d, part in products.items()}
-    for d, total in products.items():
+    found: dict[Pair, NDArray[np.float64]] = {}
+    for d, part in products.items():
         # B = Q W by the product rule, solved for the highest derivative of Q
-        for (i, j), times in _SHARES[d].items():
-            if (i, j) != VALUE:
-                total = total - scale_rows(found[d[0] - i, d[1] - j], times * below[i, j])
-        found[d] = scale_rows(sparse.csr_array(total), 1 / below[VALUE])
-    return found
+        rest = sum(found[d[0] - i, d[1] - j] * _column(n * below[i, j]) for (i, j), n in _lower_shares(d))
+        found[d] = (local_entries(part) - rest) / _column(below[VALUE])
+    return {d: sparse.csr_array((found[d].ravel(), b.indices, b.indptr), b.shape) for d, b in products.items()}
 
 
 def derivatives(sheet: Sheet, basis: Mapping[Pair, sparse.csr_array]) -> dict[Pair, NDArray[np.float64]]:
@@ -112,64 +111,57 @@ def derivatives(sheet: Sheet, basis: Mapping[Pair, sparse.csr_array]) -> dict[Pa
     return {d: part @ points for d, part in basis.items()}
 
 
-def jacobians(
-    sheet: Sheet, basis: Mapping[Pair, sparse.csr_array], *, free_weights: bool
-) -> dict[Pair, sparse.csr_array]:
-    """J, the surface by its coordinates q, and its derivatives along v and u.
-
-    The coordinates q are all x of the control points, all y, all z, then all weights if those are free.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    basis : dict
-        From `rational_basis` with the sheet's weights.
-    free_weights : bool
-        Whether the weights are coordinates too.
-
-    Returns
-    -------
-    dict
-        The kinds of `basis` -> sparse array, shape (3 k, q): rows of x, y, z one below the other.
-    """
-    weights, points = sheet.weights.ravel(), sheet.control.reshape(-1, 3)
-    shape = {d: part @ (points * weights[:, None]) for d, part in basis.items()}
-    found = {}
-    for d, part in basis.items():
-        # by the control points: the same for x, y and z
-        by_point = sparse.block_diag([scale_columns(part, weights)] * 3, format="csr")
-        if free_weights:
-            by_weight = sparse.vstack([_by_weight(basis, shape, points, d, axis) for axis in range(3)])
-            by_point = sparse.hstack([by_point, by_weight], format="csr")
-        found[d] = sparse.csr_array(by_point)
-    return found
-
-
-def _by_weight(
-    basis: Mapping[Pair, sparse.csr_array], shape: Mapping[Pair, NDArray], points: NDArray, d: Pair, axis: int
-) -> sparse.csr_array:
-    """A derivative of ds/dw_i = (p_i - s) Q_i along one axis, by the product rule, shape (k, n m)."""
-    total = scale_columns(basis[d], points[:, axis])
-    for (i, j), times in _SHARES[d].items():
-        total = total - scale_rows(basis[d[0] - i, d[1] - j], times * shape[i, j][:, axis])
-    return sparse.csr_array(total)
-
-
-def scale_columns(matrix: sparse.csr_array, by: NDArray) -> sparse.csr_array:
-    """A matrix times a diagonal one, without the cost of a product of sparse matrices.
+def shape_products(
+    basis: Mapping[Pair, sparse.csr_array],
+    shape: Mapping[Pair, NDArray[np.float64]],
+    kinds: Sequence[Pair],
+    scale: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Derivatives along v and u of s Q_i, by the product rule: what ds/dw_i is off p_i Q_i.
 
     Parameters
     ----------
-    matrix : sparse array, shape (n, m)
-    by : ndarray, shape (m,)
+    basis, shape : dict
+        From `rational_basis` and `derivatives`; s may be taken from another origin at each place.
+    kinds : sequence of (int, int)
+        Times by v, times by u; those of `basis` or some of them.
+    scale : ndarray, shape (k, kinds)
+        A factor for each.
 
     Returns
     -------
-    sparse array, shape (n, m)
-
-    Examples
-    --------
-    >>> scale_columns(sparse.csr_array([[1.0, 2.0], [0.0, 3.0]]), np.array([10.0, 100.0])).toarray().tolist()
-    [[10.0, 200.0], [0.0, 300.0]]
+    ndarray, shape (k, kinds, 3, 16)
+        By the control points that move each place.
     """
-    return sparse.csr_array((matrix.data * by[matrix.indices], matrix.indices, matrix.indptr), matrix.shape)
+    number = {d: n for n, d in enumerate(basis)}
+    splines = np.stack([local_entries(part) for part in basis.values()], axis=1)
+    factors = np.zeros((*scale.shape, 3, len(basis)))
+    for row, d in enumerate(kinds):
+        for (i, j), times in _SHARES[d].items():
+            factors[:, row, :, number[d[0] - i, d[1] - j]] = times * scale[:, row, None] * shape[i, j]
+    # a small matrix times another one for each place
+    return (factors.reshape(len(scale), -1, len(basis)) @ splines).reshape(*scale.shape, 3, LOCAL)
+
+
+def local_entries(matrix: sparse.csr_array) -> NDArray[np.float64]:
+    """The entries of a matrix that has one for each control point that moves a place.
+
+    Parameters
+    ----------
+    matrix : sparse array, shape (k, n m)
+        From `tensor`, `spline_products` or `rational_basis`.
+
+    Returns
+    -------
+    ndarray, shape (k, 16)
+    """
+    return matrix.data.reshape(-1, LOCAL)
+
+
+def _lower_shares(d: Pair) -> list[tuple[Pair, int]]:
+    """The shares of a derivative without the factor itself."""
+    return [(share, times) for share, times in _SHARES[d].items() if share != VALUE]
+
+
+def _column(x: NDArray) -> NDArray:
+    return x[:, None]

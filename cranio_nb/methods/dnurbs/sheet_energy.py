@@ -15,6 +15,7 @@ from scipy import sparse
 
 from .sheet import STRAINS, VALUE, Material, Sheet, Springs, gauss
 from .sheet_derivatives import Pair, derivatives, rational_basis, spline_products
+from .span_sums import Places, sorted_places
 
 
 @dataclass(frozen=True)
@@ -65,17 +66,26 @@ class Quadrature:
     ----------
     weight : ndarray, shape (k,)
         Of the Gauss points.
+    inside : Places
+        The Gauss points.
     splines : dict
         (times by v, times by u) -> products of the B-splines at the Gauss points, sparse, shape (k, n m).
     natural : dict
         (times by v, times by u) -> the natural shape at the Gauss points, shape (k, 3), mm.
+    springs : Springs
+        Sorted by span.
+    pulled : Places
+        Where the springs pull.
     at_springs : dict
-        (0, 0) -> products of the B-splines at the springs.
+        (0, 0) -> products of the B-splines there.
     """
 
     weight: NDArray[np.float64]
+    inside: Places
     splines: dict[Pair, sparse.csr_array]
     natural: dict[Pair, NDArray[np.float64]]
+    springs: Springs
+    pulled: Places
     at_springs: dict[Pair, sparse.csr_array]
 
 
@@ -92,17 +102,23 @@ def quadrature(setting: Setting) -> Quadrature:
     Quadrature
     """
     natural, springs = setting.natural, setting.springs
-    weight, splines = _gauss_products(natural.spans)
+    weight, inside, splines = _gauss_products(natural.spans)
     shape = derivatives(natural, rational_basis(natural.weights, splines))
+    # the springs, sorted as their places are
+    pulled = sorted_places(springs.v, springs.u, natural.spans)
+    springs = Springs(*(part[pulled.order] for part in (springs.points, springs.v, springs.u, springs.strength)))
     at_springs = spline_products(springs.v, springs.u, natural.spans, (VALUE,))
-    return Quadrature(weight, splines, shape, at_springs)
+    return Quadrature(weight, inside, splines, shape, springs, pulled, at_springs)
 
 
 @lru_cache(maxsize=4)
-def _gauss_products(spans: tuple[int, int]) -> tuple[NDArray[np.float64], dict[Pair, sparse.csr_array]]:
-    """Weights of the Gauss points of all spans, and the products of the B-splines there."""
+def _gauss_products(spans: tuple[int, int]) -> tuple[NDArray[np.float64], Places, dict[Pair, sparse.csr_array]]:
+    """Weights of the Gauss points of all spans, the points, and the products of the B-splines there."""
     (v, by_v), (u, by_u) = (gauss(n) for n in spans)
-    return np.outer(by_v, by_u).ravel(), spline_products(np.repeat(v, len(u)), np.tile(u, len(v)), spans)
+    v, u = np.repeat(v, len(u)), np.tile(u, len(v))
+    inside = sorted_places(v, u, spans)
+    splines = spline_products(v[inside.order], u[inside.order], spans)
+    return np.outer(by_v, by_u).ravel()[inside.order], inside, splines
 
 
 def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> float:
@@ -120,29 +136,13 @@ def potential(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadratu
     -------
     float
     """
-    shape, springs = derivatives(sheet, rational_basis(sheet.weights, sums.splines)), setting.springs
+    # where the Gauss points and the places of the springs lie
+    shape = derivatives(sheet, rational_basis(sheet.weights, sums.splines))
+    pulled = derivatives(sheet, rational_basis(sheet.weights, sums.at_springs))[VALUE]
     elastic = sum(
         factor * float(sums.weight @ ((shape[d] - sums.natural[d]) ** 2).sum(axis=1))
         for factor, d in zip(setting.material.stiffness, STRAINS, strict=True)
     )
-    pulled = float(springs.strength @ (stretched(sheet, springs, sums) ** 2).sum(axis=1))
+    stretched = float(sums.springs.strength @ ((sums.springs.points - pulled) ** 2).sum(axis=1))
     held = dynamics.hold * float(((sheet.weights - 1) ** 2).sum()) if dynamics.free_weights else 0.0
-    return (elastic + pulled + held) / 2
-
-
-def stretched(sheet: Sheet, springs: Springs, sums: Quadrature) -> NDArray[np.float64]:
-    """How far each spring is stretched.
-
-    Parameters
-    ----------
-    sheet : Sheet
-    springs : Springs
-    sums : Quadrature
-        Of a setting with these springs.
-
-    Returns
-    -------
-    ndarray, shape (k, 3)
-        From its place on the sheet to where it pulls, mm.
-    """
-    return springs.points - derivatives(sheet, rational_basis(sheet.weights, sums.at_springs))[VALUE]
+    return (elastic + stretched + held) / 2

@@ -30,12 +30,11 @@ from itertools import count, islice
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.linalg import splu, spsolve
 
-from .sheet import STRAINS, VALUE, Sheet, scale_rows
-from .sheet_derivatives import derivatives, jacobians, rational_basis, scale_columns
-from .sheet_energy import Dynamics, Quadrature, Setting, potential, quadrature, stretched
+from .band import band_solver, band_times
+from .sheet import Sheet
+from .sheet_energy import Dynamics, Quadrature, Setting, potential, quadrature
+from .sheet_forces import Forces, by_kind, by_point, forces
 
 _LIGHTEST = 0.05  # a weight may not fall below
 _SHORTEST = 1e-6  # part of its time to which a step is shortened before the sheet counts as being at rest
@@ -67,15 +66,6 @@ class Motion:
     moved: float = float("inf")
     n_iter: int = 0
     converged: bool = False
-
-
-@dataclass(frozen=True, eq=False)
-class _Forces:
-    """What acts on a sheet at its place: the integral of J^T J, the stiffness of sheet and springs, and their force."""
-
-    matter: sparse.csr_array
-    elastic: sparse.csr_array
-    force: NDArray[np.float64]
 
 
 def start(sheet: Sheet, setting: Setting, dynamics: Dynamics) -> Motion:
@@ -139,11 +129,11 @@ def relax(
 def _moving(motion: Motion, setting: Setting, dynamics: Dynamics, tol: float) -> Iterator[Motion]:
     """The motion after each step."""
     sums = quadrature(setting)
-    forces = _forces(motion.sheet, setting, dynamics, sums)
+    acting = forces(motion.sheet, setting, dynamics, sums)
     while True:
-        motion = _step(motion, forces, setting, dynamics, sums)
-        forces = _forces(motion.sheet, setting, dynamics, sums)
-        rests = motion.moved <= tol and (motion.moved == 0 or _left(motion.sheet, forces, dynamics) <= tol)
+        motion = _step(motion, acting, setting, dynamics, sums)
+        acting = forces(motion.sheet, setting, dynamics, sums)
+        rests = motion.moved <= tol and (motion.moved == 0 or _left(motion.sheet, acting, dynamics) <= tol)
         motion = replace(motion, converged=rests)
         yield motion
 
@@ -151,96 +141,59 @@ def _moving(motion: Motion, setting: Setting, dynamics: Dynamics, tol: float) ->
 def _moving_frozen(motion: Motion, setting: Setting, dynamics: Dynamics, tol: float) -> Iterator[Motion]:
     """The motion after each step, weights frozen: a swing about the place of rest, which is known."""
     sums, dt, sheet = quadrature(setting), dynamics.dt, motion.sheet
-    matter, elastic, pulled = _frozen(sheet.weights, setting, sums)
-    q, velocity = sheet.control.reshape(-1, 3), motion.velocity.reshape(3, -1).T
+    acting = forces(sheet, setting, dynamics, sums)
+    q, velocity = sheet.control.reshape(-1, 3), by_point(motion.velocity, free_weights=False)
     # the place of rest and its energy
-    rest = spsolve(elastic, pulled, permc_spec="MMD_AT_PLUS_A")
+    rest = q + band_solver(acting.elastic)(acting.force)
     least = potential(Sheet(rest.reshape(sheet.control.shape), sheet.weights), setting, dynamics, sums)
     # (M / dt^2 + D / dt + K) dq = K (q* - q) + M q' / dt, one matrix for all steps
-    inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * matter
-    factors = splu(sparse.csc_array(inertia + elastic), permc_spec="MMD_AT_PLUS_A")
+    inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * acting.matter
+    solve = band_solver(inertia + acting.elastic)
     for n_iter in count(motion.n_iter + 1):
-        change = factors.solve(elastic @ (rest - q) + dynamics.mass / dt * (matter @ velocity))
+        push = band_times(acting.elastic, rest - q) + _momentum(velocity, acting, dynamics) / dt
+        change = solve(push)
         q, velocity, away = q + change, change / dt, rest - q - change
-        energy = (
-            least + float(np.sum(away * (elastic @ away)) + dynamics.mass * np.sum(velocity * (matter @ velocity))) / 2
-        )
+        twice = away * band_times(acting.elastic, away) + velocity * _momentum(velocity, acting, dynamics)
+        energy = least + float(np.sum(twice)) / 2
         moved, left = (float(np.linalg.norm(way, axis=1).max()) for way in (change, away))
         now = Sheet(q.reshape(sheet.control.shape), sheet.weights)
         yield Motion(now, velocity.T.ravel(), energy, moved, n_iter, converged=max(moved, left) <= tol)
 
 
-def _frozen(
-    weights: NDArray[np.float64], setting: Setting, sums: Quadrature
-) -> tuple[sparse.csc_array, sparse.csc_array, NDArray[np.float64]]:
-    """Of one coordinate, the same for x, y and z: the integral of J^T J, and K; and K q*, shape (n m, 3)."""
-    parts, at_springs = (rational_basis(weights, products) for products in (sums.splines, sums.at_springs))
-    by_point = {d: scale_columns(part, weights.ravel()) for d, part in parts.items()}
-    # the springs, then the sheet itself against its natural shape
-    pull = scale_columns(at_springs[VALUE], weights.ravel())
-    held = scale_rows(pull, setting.springs.strength).T
-    elastic, pulled = held @ pull, held @ setting.springs.points
-    for factor, d in zip(setting.material.stiffness, STRAINS, strict=True):
-        bent = scale_rows(by_point[d], factor * sums.weight).T
-        elastic, pulled = elastic + bent @ by_point[d], pulled + bent @ sums.natural[d]
-    matter = scale_rows(by_point[VALUE], sums.weight).T @ by_point[VALUE]
-    return sparse.csc_array(matter), sparse.csc_array(elastic), pulled
-
-
-def _step(motion: Motion, forces: _Forces, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> Motion:
+def _step(motion: Motion, acting: Forces, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> Motion:
     """One step of the motion under the forces at its place, shortened where it must be."""
     sheet, free = motion.sheet, dynamics.free_weights
-    q, velocity, dt = _coordinates(sheet, free), motion.velocity, dynamics.dt
+    q, velocity, dt = _coordinates(sheet, free), by_point(motion.velocity, free_weights=free), dynamics.dt
     while dt > _SHORTEST * dynamics.dt:
         # (M / dt^2 + D / dt + K) dq = f + M q' / dt
-        inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * forces.matter
-        push = forces.force + (dynamics.mass / dt) * (forces.matter @ velocity)
-        change = spsolve(sparse.csc_array(inertia + forces.elastic), push, permc_spec="MMD_AT_PLUS_A")
-        new = _with_coordinates(sheet, q + change, free)
+        inertia = (dynamics.mass / dt**2 + dynamics.damping / dt) * acting.matter
+        push = acting.force + _momentum(velocity, acting, dynamics) / dt
+        change = band_solver(inertia + acting.elastic)(push)
+        new = _with_coordinates(sheet, q + by_kind(change, free_weights=free), free)
+        # nan where nothing holds the sheet: no step either
         if new.weights.min() > _LIGHTEST:
             speed = change / dt
-            motion_energy = dynamics.mass / 2 * float(speed @ (forces.matter @ speed))
+            motion_energy = float(np.sum(speed * _momentum(speed, acting, dynamics))) / 2
             energy = potential(new, setting, dynamics, sums) + motion_energy
             if energy <= motion.energy * (1 + 1e-12):
                 moved = float(np.linalg.norm(new.control - sheet.control, axis=-1).max())
-                return Motion(new, speed, energy, moved, motion.n_iter + 1)
+                return Motion(new, by_kind(speed, free_weights=free), energy, moved, motion.n_iter + 1)
         # too far: from rest again with half the time
         velocity, dt = np.zeros_like(velocity), dt / 2
     return replace(motion, moved=0.0, n_iter=motion.n_iter + 1)
 
 
-def _left(sheet: Sheet, forces: _Forces, dynamics: Dynamics) -> float:
+def _momentum(velocity: NDArray[np.float64], acting: Forces, dynamics: Dynamics) -> NDArray[np.float64]:
+    """M q', without the cost of it where there is no mass."""
+    return dynamics.mass * band_times(acting.matter, velocity) if dynamics.mass else np.zeros_like(velocity)
+
+
+def _left(sheet: Sheet, acting: Forces, dynamics: Dynamics) -> float:
     """Farthest way of a control point to where elastic forces and springs are even."""
-    change = spsolve(sparse.csc_array(forces.elastic), forces.force, permc_spec="MMD_AT_PLUS_A")
-    even = _with_coordinates(sheet, _coordinates(sheet, dynamics.free_weights) + change, dynamics.free_weights)
+    free = dynamics.free_weights
+    change = by_kind(band_solver(acting.elastic)(acting.force), free_weights=free)
+    even = _with_coordinates(sheet, _coordinates(sheet, free) + change, free)
     return float(np.linalg.norm(even.control - sheet.control, axis=-1).max())
-
-
-def _forces(sheet: Sheet, setting: Setting, dynamics: Dynamics, sums: Quadrature) -> _Forces:
-    """Inertia, stiffness and force of a sheet and its springs at the sheet's place."""
-    free, springs = dynamics.free_weights, setting.springs
-    # the springs
-    at_springs = rational_basis(sheet.weights, sums.at_springs)
-    pull = jacobians(sheet, at_springs, free_weights=free)[VALUE]
-    strength = np.tile(springs.strength, 3)
-    elastic = pull.T @ scale_rows(pull, strength)
-    force = pull.T @ (strength * stretched(sheet, springs, sums).T.ravel())
-    # the sheet itself, against its natural shape
-    basis = rational_basis(sheet.weights, sums.splines)
-    parts, shape = jacobians(sheet, basis, free_weights=free), derivatives(sheet, basis)
-    for factor, d in zip(setting.material.stiffness, STRAINS, strict=True):
-        elastic = elastic + factor * _gram(parts[d], sums.weight)
-        force = force - factor * (parts[d].T @ (sums.weight * (shape[d] - sums.natural[d]).T).ravel())
-    # what holds free weights at 1
-    if free:
-        held = np.repeat([0.0, dynamics.hold], [3 * sheet.weights.size, sheet.weights.size])
-        force = force - held * (_coordinates(sheet, True) - 1)
-        elastic = elastic + sparse.diags_array(held)
-    return _Forces(_gram(parts[VALUE], sums.weight), sparse.csr_array(elastic), force)
-
-
-def _gram(part: sparse.csr_array, weight: NDArray) -> sparse.csr_array:
-    return sparse.csr_array(part.T @ scale_rows(part, np.tile(weight, 3)))
 
 
 def _coordinates(sheet: Sheet, free_weights: bool) -> NDArray[np.float64]:

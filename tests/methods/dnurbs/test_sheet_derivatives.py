@@ -1,10 +1,10 @@
 """Derivatives of a rational sheet, along it and by its coordinates, against finite differences."""
 
 import numpy as np
-from sheets import SHAPE, SPANS
+from sheets import SHAPE, SPANS, jacobians
 
 from cranio_nb.methods.dnurbs import sheet, sheet_motion
-from cranio_nb.methods.dnurbs.sheet_derivatives import derivatives, jacobians, rational_basis, spline_products
+from cranio_nb.methods.dnurbs.sheet_derivatives import derivatives, rational_basis, spline_products
 
 
 def test_with_weights_all_alike_the_basis_is_that_of_the_splines(places):
