@@ -24,11 +24,12 @@ N_KERNELS, THREADS = 3, (1, 2)
 QUICK = [
     "tests/test_curves.py",
     "tests/stages/test_deformable_model.py",
+    *(f"tests/geometry/test_{name}.py" for name in ("band", "symmetric_system")),
     *(f"tests/vault/test_symmetry.py::test_it_moves_with_the_header[{hole}]" for hole in ("unilateral", "bilateral")),
     *(f"tests/vault/test_{name}.py" for name in ("midline", "nod", "rims", "slicing")),
     *(
         f"tests/methods/dnurbs/test_{name}.py"
-        for name in ("band", "sheet", "sheet_derivatives", "sheet_forces", "sheet_motion")
+        for name in ("sheet", "sheet_derivatives", "sheet_forces", "sheet_motion")
     ),
     "tests/methods/test_reflection.py::test_the_fitted_image_meets_the_rim",
     "tests/methods/test_design.py::test_a_turned_and_moved_header_turns_and_moves_the_mesh",

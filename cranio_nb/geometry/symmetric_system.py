@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.linalg import LinAlgError, cho_solve_banded, cholesky_banded
 from scipy.sparse.linalg import splu
+
+from .band import band_of, band_solver
 
 Array = NDArray[np.float64]
 
@@ -36,16 +37,9 @@ def solve(matrix: sparse.csc_array, right: Array) -> Array:
     [1.0, 2.0]
     """
     entries = matrix.tocoo()
-    below = entries.row - entries.col
-    width = int(below.max(initial=0))
-    if width <= _NARROW:
-        band, kept = np.zeros((width + 1, len(right))), below >= 0
-        band[below[kept], entries.col[kept]] = entries.data[kept]
-        try:
-            factor = cholesky_banded(band, overwrite_ab=True, lower=True, check_finite=False)
-        except LinAlgError:  # so little is held that rounding decides: sparse factors have no roots to take
-            pass
-        else:
-            return np.asarray(cho_solve_banded((factor, True), right, check_finite=False))
+    if (entries.row - entries.col).max(initial=0) <= _NARROW:
+        solution = band_solver(band_of(matrix))(right)
+        if np.isfinite(solution).all():  # else so little is held that rounding decides, and there are no roots to take
+            return solution
     factors = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
     return np.asarray(factors.solve(right))

@@ -31,6 +31,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ...geometry import voxel_pieces
+from ...geometry.band import one_thread
 from ...opening import Opening
 from ...options import Option, Work
 from ...vault import radius_measurement, radius_voxels
@@ -38,7 +39,6 @@ from ...vault.ray_grid import RadiusMap
 from ...volume import Volume
 from ..piece import Piece
 from . import sheet, sheet_motion
-from .band import one_thread
 from .sheet import Material, Sheet, Springs
 from .sheet_energy import Dynamics, Setting
 from .sheet_motion import Motion

@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.interpolate import BSpline
 
-from .band import band_of, band_solver
+from ...geometry.band import band_of, band_solver
 
 _DEGREE = 3
 LOCAL = (_DEGREE + 1) ** 2

@@ -31,7 +31,7 @@ from itertools import count, islice
 import numpy as np
 from numpy.typing import NDArray
 
-from .band import band_solver, band_times
+from ...geometry.band import band_solver, band_times
 from .sheet import Sheet
 from .sheet_energy import Dynamics, Quadrature, Setting, potential, quadrature
 from .sheet_forces import Forces, by_kind, by_point, forces

@@ -6,9 +6,14 @@ from scipy import sparse
 from sheets import dense
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from cranio_nb.methods.dnurbs.band import band_of, band_solver, band_times, one_thread
+from cranio_nb.geometry.band import band_of, band_solver, band_times, one_thread
 
 N, HEIGHT = 40, 7
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(0)
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """Symmetric matrices whose entries lie in a band along the diagonal: stored, multiplied and solved within it.
 
-Control points that are far apart on a sheet do not act on each other. Counted row by row of its net, all that do are
-fewer than four rows apart, and so are their equations. Cholesky's factors of such a matrix stay within its band.
+Points of a net that are far apart do not act on each other: counted row by row, all that do are a few rows apart, and
+so are their equations. Cholesky's factors of such a matrix stay within its band.
 
 A band is an array, shape (h + 1, n), of the lower half: ``band[i - j, j]`` is the entry of row i and column j, i >= j;
 what would lie below the last row is 0.
@@ -22,7 +22,7 @@ from threadpoolctl import ThreadpoolController
 Array = NDArray[np.float64]
 
 
-def band_of(matrix: sparse.csr_array) -> Array:
+def band_of(matrix: sparse.sparray) -> Array:
     """The band of a sparse symmetric matrix.
 
     Parameters
