@@ -43,7 +43,8 @@ def copy(out: Path) -> None:
 
     check_writes(out, {name.split("/")[0] for name in lesson_names()}, {"the lessons": shipped_lessons()})
     made = copy_lessons(out)
-    click.echo(f"{len(made)} notebooks in {out}. Open them: cranio-nb lab {out}")
+    click.echo(f"{len(made)} notebooks: those to work in are in {out / 'exercises'}, the solved ones in {out}.")
+    click.echo(f"Open them: cranio-nb lab {out}")
 
 
 @lessons.command()

@@ -228,9 +228,9 @@ for one in cn.survey_openings(masks[2], scan=ct):
     print(one)
 
 # %% [markdown]
-# Why only 0.60, the least that rule 8 gives? Our head has no face, so nothing shows how it lies, and which part is the
-# vault rests on the axes of the scan alone. The more surely the bone shows how the head lies, and the more of the
-# opening lies above the base, the nearer the confidence comes to 1.00.
+# Why only 0.60, the least that the last rule gives? Our head has no face, so nothing shows how it lies, and which
+# part is the vault rests on the axes of the scan alone. The more surely the bone shows how the head lies, and the
+# more of the opening lies above the base, the nearer the confidence comes to 1.00.
 #
 # **Predict.** We fill the missing bone with thin bone: HU above those of soft tissue, but below the threshold. The mask
 # has the same hole as before. What does the verdict say of it, from the mask alone, and with the HU?

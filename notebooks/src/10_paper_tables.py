@@ -198,12 +198,12 @@ print_row("printed: You", printed["You et al."])
 # <details>
 # <summary>Answer</summary>
 #
-# No. Two causes are in the first four rows. **Skip:** ten points are 9 mm on our pixels, and 4.5 mm on theirs if these
-# are what lesson 03 takes them for; read the first row against the second. **k:** their -0.062 was chosen for their
-# opening, and a `k` fits one width of gap (lesson 04); read the second row against the fourth. Each alone brings the
-# mean down, and both together come nearest. Outside the constant weighs more, inside both weigh about the same. With
-# both mended the outer mean is below the paper's; the inner one is not. The default's shorter `skip` and the fans bring
-# the rest. The idea was good; the numbers were local.
+# No. Two causes are in the first four rows. **Skip:** ten points are 9 mm on our pixels, and 4.5 mm on theirs if
+# these are what lesson 03 takes them for; read the first row against the second. **k:** their -0.062 was chosen for
+# their opening, and a `k` fits one width of gap (lesson 04); read the first row against the third. Each alone brings
+# the mean down, and both together, the fourth row, come nearest. Outside the constant weighs more, inside both weigh
+# about the same. With both mended the outer mean is below the paper's; the inner one is not. The default's shorter
+# `skip` and the fans bring the rest. The idea was good; the numbers were local.
 #
 # The reflection comes very near here, as this head is nearly symmetric: on such a head the paper's truth would do. On a
 # lopsided one it would not (lesson 08), and part of the paper's own mean may be the mirror's. The default, the thin
@@ -284,11 +284,11 @@ for wide_mm, high_mm in ((0.45, 0.45), (0.9, 2.5), (0.45, 2.5)):
 # <summary>Answer</summary>
 #
 # You shows its bias: mean about half the cap height, 0.55 of it here. A flat lid under a cap gives a half (exercise
-# 8.2); a rim that is not plane lets the film sag a little more. The paper's mean is 0.51 of its largest distance: same
-# method, same flaw, while 3.09 itself only says how high the authors' cap was.
+# 8.2), and the film of lesson 08, measured before it is made of voxels, comes to a half as well. The paper's mean is
+# 0.51 of its largest distance: same method, same flaw, while 3.09 itself only says how high the authors' cap was.
 #
 # Voxels are no cubes, and their shape changes what "nearest" means. The last three lines count the same two surfaces in
-# cubes, in our voxels, and in voxels such as the authors' may have been: 0.51 to 0.55, for the plate stands upright. So
+# cubes, in our voxels, and in voxels such as the authors' may have been: 0.51 to 0.55, for the film stands upright. So
 # the paper's ratio is what such a fill gives; more cannot be read from two numbers.
 #
 # </details>
