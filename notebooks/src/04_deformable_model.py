@@ -625,7 +625,8 @@ check.exercise("4.2", pressure)
 # %% [markdown]
 # **Exercise 4.3.** Bridge the gap. Put it together: start curve, slopes per snaxel at both ends, pressure, `inflate`.
 # Return the curve (n, 2) in the chord frame. It is tried on three gaps of the synthetic head whose tangents are turned
-# by 4 and 8 degrees, as by noise, once with 9 snaxels only. Each snaxel may be 0.2 px from the balloon at rest.
+# by 4 and 8 degrees, as by noise, once with 9 snaxels only. Each snaxel may be 0.2 px from the balloon at
+# rest under one constant pressure, that of its end tangents (exercise 4.2).
 
 
 # %% tags=["solution"]

@@ -239,7 +239,7 @@ for s in balloons[:2] + balloons[-3:]:
 #
 # The last slice with a balloon is bad: next to nothing is left of its patch. Its outer theta1 stands out among those
 # printed. More than 180 degrees means that the curve has to arrive from *inside* the head, so outer and inner curve
-# cross: the outer tangent was fitted to bone that the cutter had slanted. **One bad tangent spoils a slice**, and a
+# all but meet: the outer tangent was fitted to bone that the cutter had slanted. **One bad tangent spoils a slice**, and a
 # slice knows nothing of its neighbours. (The smaller jumps from bar to bar, in the middle, have much the same source:
 # each slice finds its own ends and tangents, with the noise of lesson 03.) Section 5 helps.
 #

@@ -208,8 +208,8 @@ for percent in (0, 2, 4, 6):
 #
 # - **Pose.** This head is turned by 2.1 degrees. With the plane found, its mirror image rises from Dice 0.817 to 0.951
 #   and HD95 falls from 1.80 to 0.90 mm: on this head a mirror is a good yardstick, once it stands straight.
-# - **Asymmetry.** No plane mends that. With the sound half 4 % wider the yardstick is 0.58 mm off on average, with 6 %
-#   0.66 mm; each further step costs.
+# - **Asymmetry.** The plane found moves with the wider half and hides a part of it; what is left, no plane mends. With the
+#   sound half 4 % wider the yardstick is 0.58 mm off on average, with 6 % 0.66 mm; each further step costs.
 #
 # Real heads are not symmetric. A yardstick that is itself off by 0.58 mm on average may well take the worse of two good
 # methods for the better one. Where the defect crosses the middle there is no mirror at all. The paper is right to call

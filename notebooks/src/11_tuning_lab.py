@@ -73,12 +73,14 @@ quick = {"directions": 2, "n_snaxels": 21}  # see above
 panel = widgets.tuner(case.ct, case.truth)
 panel
 
-# %% tags=["nbval-check-output"]
-start = dict(panel.values)
+# %%
 trials = {"pressure_mm": (0.04, 0.16), "tension": (0.5, 2), "rigidity": (0.5, 2)}
 trials |= {"skip_mm": (1, 3), "reach_mm": (5, 20)}
 if case.ct.voxels.dtype != bool:  # a mask has no threshold
     trials |= {"threshold_hu": (200, 800)}
+
+# %% tags=["nbval-check-output"]
+start = dict(panel.values)
 rough = quick | {"smooth": False}  # the voxels are the same
 
 
@@ -101,7 +103,7 @@ _ = panel.set(**start)
 # <summary>Answer</summary>
 #
 # From 0.94 for the quick default, `k` and the tension cost much in both directions, the threshold where it is
-# doubled: at 800 HU thin bone is lost. (0.04 and 0.16 are half and twice of a `k` of 0.08, as 21 snaxels want it.)
+# doubled: at 800 HU thin bone is lost. (0.04 and 0.16 are half and twice of the `k` that 21 snaxels want.)
 # Half a reach costs more than twice of it, and a skip of 1 or 3 mm little. (The slider of the skip goes in steps of
 # half a mm.) The rigidity changes next to nothing: that one you would not have to tune.
 #

@@ -49,8 +49,8 @@ def _dented():
     speck[82, 43:47] = False
     pits = (col >= 33) & (col < 35) & (row >= -6) & (row < 0) | (col >= 35) & (col < 37) & (row >= 0) & (row < 6)
     size = np.bincount(ndimage.label(convex_hull_image(dent) & ~dent)[0].ravel())
-    # just enough; two dents and an island; a region that holds together at a corner only
-    return [(dent, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]
+    # one dent of two, just enough; both, and no island; a region that holds together at a corner only
+    return [(speck, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]
 
 
 def _lost(bone, min_pixels, touching=_CORNERS):
@@ -247,6 +247,8 @@ EXERCISES: dict[str, Exercise] = {
             (_with_cavity, "The brain's place is in it: drop the biggest region too."),
             (lambda b, m: _with_cavity(b, m, _SIDES), "The brain's place is in it: drop the biggest region too."),
             (lambda b, m: _lost(b, 1), "Small islands are left: drop regions under min_pixels."),
+            (lambda b, m: _lost(b, 10), "A fixed number of pixels? min_pixels is another one each time."),
+            (lambda b, m: _lost(b, 30), "A fixed number of pixels? min_pixels is another one each time."),
             (
                 lambda b, m: _lost(b, m, _SIDES),
                 "Pixels that touch at a corner belong together: measure.label counts them so.",

@@ -63,6 +63,14 @@ WRONG = {
         ("return np.where(bone, region, False)", "This is just the part that must go"),
     ],
     "5.3": [
+        *(
+            (
+                "l = measure.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel()); s[0] = 0; "
+                f"k = s >= {n_pixels}; k[s.argmax()] = False; return k[l]",
+                "A fixed number",
+            )
+            for n_pixels in (5, 20, 40)
+        ),
         ("return convex_hull_image(bone) & ~bone", "whole difference"),
         ("return ndimage.binary_fill_holes(bone) & ~bone", "convex hull"),
         (
