@@ -25,7 +25,7 @@ MODULES = {
     "readers/dicom/rescale": ["readers/dicom/test_rescale"],
     "readers/dicom/series_groups": ["readers/dicom/test_series_groups"],
     "vault/opening_choice": ["vault/test_opening_choice"],
-    "vault/opening_search": ["vault/test_opening_search"],
+    "vault/opening_search": ["vault/test_opening_search_steps", "vault/test_opening_search"],
     "vault/verdict": ["vault/test_verdict"],
     "output/mesh_files": ["output/test_mesh_files"],
     "output/nifti_files": ["output/test_nifti_files"],

@@ -179,10 +179,10 @@ def _find_vault(bone: Mask, affine: Array) -> _Vault:
 
 def _main_parts(solid: Mask) -> Mask:
     """The large connected pieces: a sawn skull has two, a table or a head holder is smaller."""
-    hits = [np.flatnonzero(solid.any(axis=tuple({0, 1, 2} - {axis}))) for axis in range(3)]
-    if not len(hits[0]):
+    boxes = ndimage.find_objects(solid.view(np.uint8))
+    if not boxes:
         raise ValueError("There is no bone in this scan.")
-    box = tuple(slice(hit[0], hit[-1] + 1) for hit in hits)
+    box = boxes[0]
     labels, _ = ndimage.label(solid[box])
     sizes = np.bincount(labels[solid[box]])[1:]
     kept = np.zeros(solid.shape, bool)

@@ -88,10 +88,16 @@ def band_solver(band: Array) -> Callable[[Array], Array]:
     [1.0, 10.0, 100.0]
     """
     try:
-        factor = cholesky_banded(band, lower=True, check_finite=False)
+        with one_thread():
+            factor = cholesky_banded(band, lower=True, check_finite=False)
     except LinAlgError:
         return lambda right: np.full_like(right, np.nan)
-    return lambda right: np.asarray(cho_solve_banded((factor, True), right, check_finite=False))
+
+    def solve(right: Array) -> Array:
+        with one_thread():
+            return np.asarray(cho_solve_banded((factor, True), right, check_finite=False))
+
+    return solve
 
 
 @contextmanager
@@ -103,7 +109,7 @@ def one_thread() -> Iterator[None]:
     Examples
     --------
     >>> with one_thread():
-    ...     solve = band_solver(np.array([[2.0]]))
+    ...     product = np.eye(2) @ np.eye(2)
     """
     with _libraries().limit(limits=1, user_api="blas"):
         yield

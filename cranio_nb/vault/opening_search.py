@@ -146,7 +146,7 @@ def unfilled_bone(bone: Volume, scan: Volume | None) -> Volume:
     """
     if scan is None:
         return bone
-    # only where there is bone, and without a second volume beside the result
+    # only where there is bone
     box, kept = bone.box(), np.zeros(bone.shape, bool)
     solid = scan.voxels[box]
     np.logical_and(bone.voxels[box], solid if solid.dtype == bool else solid >= int(SOFT_HU), out=kept[box])

@@ -334,7 +334,7 @@ for size in (15, 30, 50, 70, 100):
 # </details>
 #
 # On ten real skulls, the cases of SkullFix (Kodym et al. 2021), the README's table has a mean Dice of 0.935 for the
-# thin plate and 0.943 with a prior, in the worst case 0.895 and 0.910 (`benchmarks/skullfix.py` measures it). No prior
+# thin plate and 0.942 with a prior, in the worst case 0.895 and 0.906 (`benchmarks/skullfix.py` measures it). No prior
 # is shipped: learn one from scans that you may use. It is never needed.
 #
 # ## 5. A sheet that moves
@@ -446,7 +446,7 @@ pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone ar
 #
 # One head is one draw, and a smooth one. On ten real skulls (the README's table) the order is that of the large hole,
 # but the three lie nearer together: mean Dice 0.935 for the plate, 0.925 for the slices, 0.916 for D-NURBS (worst case
-# 0.895, 0.879 and 0.863).
+# 0.895, 0.879 and 0.861).
 #
 # </details>
 #

@@ -6,7 +6,8 @@ from scipy import sparse
 from sheets import dense
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from cranio_nb.geometry.band import band_of, band_solver, band_times, one_thread
+from cranio_nb.geometry import band as module
+from cranio_nb.geometry.band import band_of, band_solver, band_times
 
 N, HEIGHT = 40, 7
 
@@ -46,9 +47,13 @@ def threads():
     return [one["num_threads"] for one in threadpool_info() if one["user_api"] == "blas"]
 
 
-def test_blas_has_one_thread_meanwhile_and_as_many_as_before_then():
+def test_blas_has_one_thread_in_a_band_and_as_many_as_before_then(matrix, monkeypatch):
+    seen = []
+    for name in ("cholesky_banded", "cho_solve_banded"):
+        own = getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *a, own=own, **k: seen.append(threads()) or own(*a, **k))
     with threadpool_limits(2, "blas"):
         before = threads()
-        with one_thread():
-            assert set(threads()) == {1}
+        band_solver(band_of(sparse.csr_array(matrix)))(np.ones(N))
         assert threads() == before
+    assert len(seen) == 2 and {n for counts in seen for n in counts} == {1}

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from hollow_ball import pierced
 
 import cranio_nb as cn
 from cranio_nb.errors import InputRefused, NoOpening
@@ -104,13 +105,9 @@ def test_thick_slices_are_said_before_a_design(scan):
 
 def test_a_hole_that_was_filled_as_a_pore_is_open_again_where_it_is_chosen(tmp_path):
     """A hollow ball with a hole of 55 mm2 at its top, which its slices cut flat."""
-    axes = [np.arange(-84.0, 84.1, step) for step in (1.0, 1.5, 1.5)]
-    z, y, x = np.meshgrid(*axes, indexing="ij", sparse=True)
-    away = np.sqrt(x**2 + y**2 + z**2)
-    bone = (away <= 75) & (away >= 69) & ~((np.hypot(x, y) <= 4.2) & (z > 0))
-    affine = np.array([[0, 0, 1.5, 0], [0, 1.5, 0, 0], [1.0, 0, 0, 0], [0, 0, 0, 1]])
-    write_nifti(cn.Volume(bone, affine), tmp_path / "ball.nii.gz")
+    ball = pierced(8.4, 1.0, at_top=True)
+    write_nifti(ball, tmp_path / "ball.nii.gz")
     with pytest.raises(NoOpening, match="--opening 1"):
         prepare(tmp_path / "ball.nii.gz")
     case = prepare(tmp_path / "ball.nii.gz", opening=(1,))
-    np.testing.assert_array_equal(case.bone.voxels, bone)
+    np.testing.assert_array_equal(case.bone.voxels, ball.voxels)

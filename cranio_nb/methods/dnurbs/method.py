@@ -145,7 +145,7 @@ def pieces(
         yield Piece(voxels, (made,), {"sheets": _entries(made)})
 
 
-@one_thread()
+@one_thread()  # of its many small products too
 def fit(
     radius_map: RadiusMap,
     *,
