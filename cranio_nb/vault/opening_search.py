@@ -113,7 +113,8 @@ def survey_openings(
     groups = open_rays(outermost, min_diameter_mm)
     unfilled = unfilled_bone(bone, scan)
     seen = outermost if unfilled is bone else measure_outermost_bone(unfilled, grid)
-    hints = hinted_rays(seen, groups, min_diameter_mm, blurred=bool(bone.spacing.max() >= THICK_MM))
+    across_voxel_mm = float(np.linalg.norm(bone.spacing))
+    hints = hinted_rays(seen, groups, min_diameter_mm, blurred=across_voxel_mm >= THICK_MM)
     judged: list[JudgedOpening] = []
     for some, mask, rays_of, plain in ((groups, bone, outermost, True), (hints, unfilled, seen, False)):
         if not some:

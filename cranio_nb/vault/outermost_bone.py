@@ -27,8 +27,8 @@ _BESIDE_DEG = 10.0  # more, so that an opening can be followed over the border
 _BASE_DEG = 88.0  # an opening that lies wholly further down is an orbit, an ear canal, the base
 _BROW_DEG = 10.0  # by which the line between vault and base rises in front and falls behind
 _BAND_DEG = 6.0  # below the line between vault and base, where no natural opening begins and a cut one may lie
-_HINT = 0.5  # of the width that is seen through: so much of it blur in thick slices may leave
-_HINT_RAYS = 7  # a disk of 6 mm; what is smaller is a pit or a vessel
+_HINT = 0.5  # of the width that is seen through: so much of it coarse voxels may leave
+_HINT_RAYS = 3  # side by side; what is smaller is a pit or a vessel
 _APART_RAYS = 3  # beside an opening: what is open within is a part of its rim
 _SIDE_DEG = 90.0  # the vault proper, over which its radius is averaged
 _SEEN = 0.75  # of the width of a small opening that is seen through, where rays cross a thick wall aslant
@@ -188,7 +188,7 @@ def hinted_rays(
     min_diameter_mm : float
         As for `open_rays`.
     blurred : bool
-        Whether the slices are so thick that they blur small openings; else narrower places are none.
+        Whether the voxels are so coarse that they blur small openings; else narrower places are none.
 
     Returns
     -------

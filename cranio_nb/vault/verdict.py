@@ -15,7 +15,8 @@ SURE = 0.5
 _TWO_WALLS = 0.5  # share of the rim with deep bone from which an opening is one between the walls of face or base
 _BASE_SHARE, _VAULT_SHARE = 0.1, 0.3  # of an opening above the base: natural up to, cut from
 _ACROSS_MM, _PLAIN_MM = 0.1, 0.8  # of bone in the middle of an opening: what was cut out left none; plainly bone
-_BLURRED_MM = 15.0  # width of a hole into which thick slices blur its rim
+_BLURRED_MM = 15.0  # width of a hole into which coarse voxels blur its rim
+_BLUR_SHARE = 0.5  # of its rim, which a blurred hole leaves less than: its width is that at half height
 _PAPER_MM, _SMALL_MM = 1.5, 30.0  # a small hole whose rim is as thin as paper was not cut
 _HALF = 0.5  # of an opening above the base: from there on walls behind its rim leave a doubt only
 
@@ -108,11 +109,10 @@ class Rule:
 
 RULES = (
     Rule(
-        f"{_ACROSS_MM:g} to {_PLAIN_MM:g} mm of bone lie across its middle, and it is narrower than {_BLURRED_MM:g} mm",
-        lambda s: _ACROSS_MM <= s.across_mm < _PLAIN_MM and s.diameter_mm < _BLURRED_MM,
-        lambda s: Verdict(
-            True, 0.4, "A trace of bone lies across it: thin bone, or a small hole blurred by the slices."
-        ),
+        f"{_ACROSS_MM:g} mm of bone or more lie across its middle, but less than {_PLAIN_MM:g} mm or"
+        f" {100 * _BLUR_SHARE:g} % of its rim's thickness, and it is narrower than {_BLURRED_MM:g} mm",
+        lambda s: _ACROSS_MM <= s.across_mm < max(_PLAIN_MM, _BLUR_SHARE * s.rim_mm) and s.diameter_mm < _BLURRED_MM,
+        lambda s: Verdict(True, 0.4, "Some bone lies across it: thin bone, or a small hole blurred by the slices."),
     ),
     Rule(
         f"{_ACROSS_MM:g} mm of bone or more lie across its middle",

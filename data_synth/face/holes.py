@@ -58,7 +58,8 @@ def draw_holes(
         directions /= np.linalg.norm(directions, axis=1, keepdims=True)
         if _fit(directions, sizes):
             return tuple(_spec(d, float(size), rng) for d, size in zip(directions, sizes, strict=True))
-    raise ValueError(f"Holes of {diameters_mm} mm do not fit into one vault; fewer or smaller ones are wanted.")
+    widths = "of widths drawn" if diameters_mm is None else f"of {', '.join(f'{d:g}' for d in diameters_mm)} mm"
+    raise ValueError(f"{count} holes {widths} do not fit into one vault; fewer or smaller ones are wanted.")
 
 
 def _fit(directions: Array, sizes: Array) -> bool:

@@ -68,7 +68,8 @@ def test_confidence_grows_with_the_vault_and_the_frame():
     ("signs", "name", "limit", "at", "below"),
     [
         (replace(CUT, diameter_mm=9.0), "across_mm", 0.1, 0, 8),
-        (replace(CUT, diameter_mm=9.0), "across_mm", 0.8, 1, 0),
+        (replace(CUT, diameter_mm=9.0), "across_mm", 3.0, 1, 0),
+        (replace(CUT, diameter_mm=9.0, rim_mm=1.55), "across_mm", 0.8, 1, 0),
         (replace(CUT, across_mm=0.5), "diameter_mm", 15.0, 1, 0),
         (CUT, "across_mm", 0.1, 1, 8),
         (replace(CUT, rim_mm=1.0), "diameter_mm", 30.0, 8, 2),
