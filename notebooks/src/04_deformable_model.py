@@ -228,11 +228,11 @@ for size in (case.px, 0.45):
     print(f"= {high * size:.1f} mm")
 
 # %% [markdown]
-# Either way the curve is too flat; by how much depends on this choice. The circles below take the paper's pixel: there a
-# gap as wide as ours (160 px, in the last line of the output) gets a third of its height, not half.
+# Either way the curve is too flat; by how much depends on this choice.
 #
-# And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of
-# 0.45 mm) and cut gaps into them.
+# And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of 0.45 mm, the paper's) and cut
+# gaps into them. The last of them is as wide as ours, 160 px, and the circle somewhat rounder than our bone: there the
+# parabola is about a sixth of the true height and the balloon at rest a third, not a half and 3.8 of 6.1 px as above.
 
 # %% tags=["nbval-check-output"]
 RADIUS, N_SNAXELS = 189.0, 21

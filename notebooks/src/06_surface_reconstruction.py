@@ -115,10 +115,11 @@ print(f"allowed are {bound:.2f} mm")
 print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm3 after")
 
 # %% [markdown]
-# **Predict, then move, then explain.** How many steps of smoothing does it take until nothing more is gained? Can you
-# leave the bound by taking all that the panel has? How far will those vertices have moved that are stopped by it? (The
-# bars beside the mesh count vertices by the way they moved; their scale is logarithmic, so that a few can be seen
-# beside many.) (No sliders? Use `panel.set(steps=48)` in a new cell.)
+# **Predict, then move, then explain.** The smoother the surface, the smaller its area. How many steps of smoothing does
+# it take until the area hardly falls any more? Can you leave the bound by taking all that the panel has? How far will
+# those vertices have moved that are stopped by it? (The bars beside the mesh count vertices by the way they moved; their
+# scale is logarithmic, so that a few can be seen beside many.) (No sliders? Use `panel.set(steps=48)` in a new cell.)
+# The cell below the panel goes on to 200 steps.
 
 # %% tags=["nbval-check-output"]
 panel = widgets.surface(patch)
@@ -136,14 +137,14 @@ for steps in (0, 1, 5, 10, 24, 200):
     )
 for steps in (10, 24):
     share = (areas[0] - areas[steps]) / (areas[0] - areas[200])
-    print(f"{steps} steps do {share:.0%} of what 200 do")
+    print(f"{steps} steps take off {share:.0%} of the area that 200 take off")
 
 # %% [markdown]
 # <details>
 # <summary>Answer</summary>
 #
-# About ten steps bring most of it: 83 % of what two hundred bring, and the default 24 bring 94 %. After that the
-# vertices still creep (0.51 to 0.61 mm on average), with little gain. (0 steps already put each vertex where the
+# About ten steps bring most of it: they take off 83 % of the area that two hundred take off, and the default 24 take off
+# 94 %. After that the vertices still creep (0.51 to 0.61 mm on average), and the area hardly falls. (0 steps already put each vertex where the
 # distance to the patch's edge, signed and smoothed, is zero; the panel's 0 is marching cubes itself.) You cannot leave
 # the bound: each vertex is clipped to its box of half a voxel in every step.
 #

@@ -137,8 +137,11 @@ EXERCISES: dict[str, Exercise] = {
                 for way in (
                     lambda o, i: np.concatenate([o, np.flip(i)]),
                     lambda o, i: np.concatenate([np.flip(o), i]),
-                    lambda o, i: np.concatenate([o, i[::-1]])[:, ::-1],
                 )
+            ),
+            (
+                lambda o, i: np.concatenate([o, i[::-1]])[:, ::-1],
+                "These points are (col, row), not (row, col); np.flip without axis does that too.",
             ),
             *(
                 (
