@@ -25,6 +25,7 @@ from .outermost_bone import (
     OutermostBone,
     hinted_rays,
     measure_outermost_bone,
+    measured_again,
     open_rays,
     room_in_image,
     vertex_rays,
@@ -112,7 +113,7 @@ def survey_openings(
     outermost = measure_outermost_bone(bone, grid)
     groups = open_rays(outermost, min_diameter_mm)
     unfilled = unfilled_bone(bone, scan)
-    seen = outermost if unfilled is bone else measure_outermost_bone(unfilled, grid)
+    seen = outermost if unfilled is bone else measured_again(outermost, unfilled)
     across_voxel_mm = float(np.linalg.norm(bone.spacing))
     hints = hinted_rays(seen, groups, min_diameter_mm, blurred=across_voxel_mm >= THICK_MM)
     judged: list[JudgedOpening] = []

@@ -136,11 +136,38 @@ def measure_outermost_bone(bone: Volume, grid: RayGrid) -> OutermostBone:
     -------
     OutermostBone
     """
-    directions = grid.directions
-    start, step = bone.to_voxel(grid.centre)[:, None], np.ascontiguousarray(bone.steps(directions).reshape(-1, 3).T)
-    radius, seen = np.full(step.shape[1], np.nan), np.zeros(step.shape[1])
-    # inwards, each ray up to the first bone it meets
-    left = np.arange(len(radius))
+    n_rays = grid.n**2
+    return _followed(bone, grid, np.full(n_rays, np.nan), np.zeros(n_rays), np.arange(n_rays))
+
+
+def measured_again(outermost: OutermostBone, bone: Volume) -> OutermostBone:
+    """The same rays in less bone: only those are followed again that met what is gone.
+
+    Parameters
+    ----------
+    outermost : OutermostBone
+    bone : Volume
+        Bool mask of a part of the bone that was measured.
+
+    Returns
+    -------
+    OutermostBone
+        As `measure_outermost_bone` gives it.
+    """
+    grid, radius = outermost.grid, outermost.radius.ravel().copy()
+    met = np.flatnonzero(np.isfinite(radius))
+    index = bone.to_voxel(grid.centre) + radius[met, None] * bone.steps(grid.directions).reshape(-1, 3)[met]
+    gone = met[~bone.at_index(index, outside=False)]
+    radius[gone] = np.nan
+    return _followed(bone, grid, radius, outermost.seen.ravel().copy(), gone)
+
+
+def _followed(
+    bone: Volume, grid: RayGrid, radius: NDArray[np.float64], seen: NDArray[np.float64], left: NDArray[np.intp]
+) -> OutermostBone:
+    """The maps of all rays, once those that are left are followed inwards, each up to the first bone it meets."""
+    start = bone.to_voxel(grid.centre)[:, None]
+    step = np.ascontiguousarray(bone.steps(grid.directions).reshape(-1, 3)[left].T)
     marked = bone.with_voxels(bone.voxels.view(np.int8))
     for length in np.arange(NEAR_MM, FAR_MM, _SAMPLE_MM)[::-1]:
         found = marked.at_index((start + length * step).T, outside=-1)

@@ -7,7 +7,7 @@ import pytest
 
 from cranio_nb.vault.opening_search import survey_openings
 from cranio_nb.vault.orientation import head_axes
-from cranio_nb.vault.outermost_bone import measure_outermost_bone, open_rays, room_in_image, vertex_rays
+from cranio_nb.vault.outermost_bone import measure_outermost_bone, measured_again, open_rays, room_in_image, vertex_rays
 from cranio_nb.volume import Volume
 from data_synth import phantom_case
 
@@ -88,3 +88,16 @@ def test_a_ball_with_a_hole_lies_in_its_image_until_the_missing_cap_leaves_it():
         room_mm.append(room_in_image(outermost, rays))
     # the cap reaches 76 mm from the middle; rays end half a voxel beyond the last column and take steps of 0.75 mm
     np.testing.assert_allclose(room_mm, np.array([166, 168, 172, 176]) - 90.5 - 76, atol=1.25)
+
+
+def test_in_less_bone_the_rays_are_what_they_are_when_all_are_followed(skull):
+    bone = skull("unilateral")
+    grid = vertex_rays(bone, np.eye(3))
+    # every third plane and a tenth of the rest is gone: rays go on, to deeper bone or out of the head
+    less = bone.voxels & ~(np.arange(bone.shape[0]) % 3 == 0)[:, None, None]
+    less &= np.random.default_rng(0).random(bone.shape) < 0.9
+    part = bone.with_voxels(less)
+    again, anew = measured_again(measure_outermost_bone(bone, grid), part), measure_outermost_bone(part, grid)
+    np.testing.assert_array_equal(again.radius, anew.radius)
+    np.testing.assert_array_equal(again.seen, anew.seen)
+    assert (again.radius < measure_outermost_bone(bone, grid).radius).sum() > 100
