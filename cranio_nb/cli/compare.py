@@ -84,7 +84,6 @@ def _print(found: Comparison, out: Path | None) -> None:
     """Print the tables, the sentences of those that refused, and where the page is."""
     from ..output.comparison_tables import tables
     from ..pipeline.compare import MEASURES
-    from ..vault.remarks import opening_remarks
     from .console import print_findings, print_table
 
     for part in tables(found):
@@ -95,7 +94,7 @@ def _print(found: Comparison, out: Path | None) -> None:
         ]
         print_table(part["title"], ("", *(what.short for what in columns.values())), rows)
         click.echo(click.wrap_text("; ".join(filter(None, map(_meaning, columns.values()))), 78, "  ", "  ") + "\n")
-    print_findings(opening_remarks(found.case.closed, found.case.left_open))
+    print_findings(found.case.remarks)
     for trial in found.trials:
         if trial.status != "done":
             click.echo(f"{trial.contender.name}: {trial.status}: {trial.message}")

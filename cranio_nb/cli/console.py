@@ -14,7 +14,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from ..output.files import json_text
-from ..readers import Finding, LoadReport
+from ..readers import Finding, LoadReport, warnings_of
 
 if TYPE_CHECKING:
     from ..pipeline.run import RunResult
@@ -127,15 +127,17 @@ def print_openings(openings: Sequence[JudgedOpening]) -> None:
         print_table("Openings of the skull, and the confidence in each verdict", head, rows)
 
 
-def print_findings(findings: Sequence[Finding]) -> None:
+def print_findings(findings: Sequence[Finding], *, err: bool = False) -> None:
     """Print findings, a line each.
 
     Parameters
     ----------
     findings : sequence of Finding
+    err : bool
+        Whether to print them beside the results, on the error stream, so that these can be read by a program.
     """
     for finding in findings:
-        click.echo(f"{finding.severity}: {finding.message}")
+        click.echo(f"{finding.severity}: {finding.message}", err=err)
 
 
 def print_result(result: RunResult, out: Path) -> None:
@@ -154,6 +156,6 @@ def print_result(result: RunResult, out: Path) -> None:
         s = result.truth.score
         click.echo(f"truth: Dice {s.dice:.3f}, border Dice {s.border_dice:.3f}, HD95 {s.hd95:.2f} mm")
     # what the scan itself warns of is said at the door, and not in the report only
-    print_findings([finding for finding in result.case.load.findings if finding.severity == "warning"])
+    print_findings(warnings_of(result.case.load.findings))
     print_findings(result.findings)
     click.echo(f"report: {out / 'report.html'}")

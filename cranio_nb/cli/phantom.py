@@ -9,7 +9,7 @@ import click
 
 from ..errors import InputRefused
 from ..options import Option
-from ..readers import read_ct
+from ..readers import read_ct, warnings_of
 from .options import CASE, PATH, SIZES, allow, check_writes, debug, head, number
 
 if TYPE_CHECKING:
@@ -73,9 +73,12 @@ def _cut(source: Path, defect: str, seed: int, allow: tuple[str, ...]) -> Case:
 
     from ..pipeline.survey import survey_scan
     from ..vault.opening_choice import check_intact
+    from .console import print_findings
 
     scan, load = read_ct(source, allow=allow)
-    check_intact(survey_scan(scan).found, "A case with a known truth is cut from an intact skull.")
+    seen = survey_scan(scan)
+    check_intact(seen.found, "A case with a known truth is cut from an intact skull.")
+    print_findings(warnings_of((*load.findings, *seen.remarks)), err=True)
     try:
         return cut_case(scan.voxels, scan.affine, defect, seed, is_mask=load.kind == "mask")
     except ValueError as error:

@@ -51,6 +51,7 @@ def learn(folder: Path, out: Path, threshold: float | None) -> None:
             scans,
             threshold=BONE_HU if threshold is None else threshold,
             skipped=lambda name, why: click.echo(f"skipped {name}: {why}", err=True),
+            warned=lambda name, why: click.echo(f"warning: {name}: {why}", err=True),
             progress=progress,
         )
         made = learn_prior(bones, progress)

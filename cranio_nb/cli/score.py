@@ -7,7 +7,7 @@ from pathlib import Path
 
 import click
 
-from ..readers import read_ct
+from ..readers import read_ct, warnings_of
 from .options import PATH, as_json, check_reads, debug, reading
 
 _UNITS = {"hd95": "mm", "assd": "mm", "rmse": "mm", "overlap": "voxels"}
@@ -41,14 +41,19 @@ def score(
       cranio-nb score patch.nrrd truth.nrrd --skull skull.nrrd --json
     """
     from ..evaluation import scores
-    from ..stages.segmentation import bone_of
-    from .console import print_json, print_table
+    from ..stages.segmentation import parts_of
+    from ..vault.second_skull import second_skull_remarks
+    from .console import print_findings, print_json, print_table
 
     check_reads(patch=patch, TRUTH=truth, skull=skull)
-    (made, _), (true, _) = read_ct(patch, mask=True), read_ct(truth, mask=True)
-    scan, _ = read_ct(skull, mask=mask, label=label, allow=allow)
+    (made, made_load), (true, true_load) = read_ct(patch, mask=True), read_ct(truth, mask=True)
+    scan, scan_load = read_ct(skull, mask=mask, label=label, allow=allow)
     # the same bone that a design of this scan starts from
-    found = dataclasses.asdict(scores.score(made, true, bone_of(scan, threshold)))
+    parts = parts_of(scan, threshold)
+    found = dataclasses.asdict(scores.score(made, true, parts.bone))
+    for what, load in (("The patch", made_load), ("The truth", true_load), ("The skull", scan_load)):
+        print_findings(warnings_of(load.findings, what), err=True)
+    print_findings(second_skull_remarks(parts.bone, parts.others), err=True)
     if as_json:
         print_json(found)
         return

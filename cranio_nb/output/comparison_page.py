@@ -18,7 +18,6 @@ from ..evaluation.against_truth import SIDES
 from ..grid import true_indices
 from ..mesh import Mesh
 from ..pipeline.compare import MEASURES, Comparison
-from ..vault.remarks import opening_remarks
 from ..vault.verdict import rule_rows
 from .comparison_tables import tables
 from .pages import Shot, lowest_shown, page_template, shot
@@ -46,7 +45,7 @@ def comparison_page(comparison: Comparison) -> str:
     return page_template("comparison_page.html").render(
         version=version("cranio-nb"),
         comparison=comparison,
-        findings=opening_remarks(case.closed, case.left_open),
+        findings=case.remarks,
         rule=rule_rows(),
         lines=dict(zip(comparison.made, _line_styles(len(comparison.made)), strict=True)),
         colours=palette,

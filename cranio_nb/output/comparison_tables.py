@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 
 from ..pipeline.compare import MEASURES, Comparison, records
-from ..vault.remarks import opening_remarks
 from .design_folder import load_record, versions
 
 
@@ -89,7 +88,7 @@ def comparison_record(comparison: Comparison) -> dict[str, Any]:
         "bone_threshold_hu": comparison.case.threshold,
         "openings": [one.record() for one in comparison.case.closed],
         "left_open": [one.record() for one in comparison.case.left_open],
-        "findings": opening_remarks(comparison.case.closed, comparison.case.left_open),
+        "findings": comparison.case.remarks,
         "units": {key: what.unit for key, what in MEASURES.items()},
         "reference": comparison.reference,
         "methods": records(comparison),

@@ -10,11 +10,12 @@ from os import PathLike
 
 from ..errors import InputRefused, NoOpening
 from ..opening import Opening
-from ..readers import LoadReport, read_ct
+from ..readers import Finding, LoadReport, read_ct, warnings_of
 from ..stages.segmentation import threshold_of
 from ..vault.opening_choice import JudgedOpening
 from ..vault.opening_search import bone_around
 from ..vault.opening_size import OpeningSize
+from ..vault.remarks import opening_remarks
 from ..volume import Volume, same_grid
 from .input_digest import digest_volume
 from .survey import Survey, survey_scan
@@ -51,6 +52,16 @@ class Prepared:
     threshold: float | None
     truth: Volume | None
     seconds: dict[str, float]
+
+    @property
+    def remarks(self) -> tuple[Finding, ...]:
+        """What a person has to know before a design: what the scan warns of, and the openings in doubt or left open.
+
+        Returns
+        -------
+        tuple of Finding
+        """
+        return (*warnings_of(self.load.findings), *opening_remarks(self.closed, self.left_open))
 
     @property
     def openings(self) -> tuple[Opening, ...]:
@@ -149,13 +160,11 @@ def prepare(
     scan, load = read_ct(
         path, mask=mask, label=label, allow=allow, progress=lambda i, n: report("reading", 0.3 * i / n)
     )
-    known = None if truth is None else read_ct(truth, mask=True)[0]
-    if known is not None:
-        check_truth_mask(known, scan)
+    known, said = (None, ()) if truth is None else read_truth(truth, scan)
     clock.lap("read")
     report("bone", 0.3)
     seen = survey_scan(scan, threshold)
-    load = replace(load, findings=(*load.findings, *seen.remarks))
+    load = replace(load, findings=(*load.findings, *said, *seen.remarks))
     closed = openings_to_close(seen, opening, planes)
     numbers = {one.number for one in closed}
     left_open = tuple(one for one in seen.found if one.number not in numbers)
@@ -230,6 +239,31 @@ def within_planes(openings: tuple[JudgedOpening, ...], planes: tuple[int, int]) 
         message = f"No opening lies in planes {first} to {last}; openings were found in planes {spans}."
         raise NoOpening("NoOpening", message)
     return tuple(parts)
+
+
+def read_truth(path: str | PathLike[str], scan: Volume) -> tuple[Volume, tuple[Finding, ...]]:
+    """Read the mask of the missing bone of a scan.
+
+    Parameters
+    ----------
+    path : path
+    scan : Volume
+
+    Returns
+    -------
+    Volume
+        Bool mask.
+    tuple of Finding
+        What the file warns of.
+
+    Raises
+    ------
+    InputRefused
+        What cannot be read safely, and as `check_truth_mask`.
+    """
+    truth, load = read_ct(path, mask=True)
+    check_truth_mask(truth, scan)
+    return truth, warnings_of(load.findings, "The truth")
 
 
 def check_truth_mask(truth: Volume, scan: Volume) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CranioError, InputRefused
-from ..readers import read_ct
+from ..readers import read_ct, warnings_of
 from ..stages.segmentation import bone_of
 from ..volume import Volume
 from .learning import check_intact
@@ -75,6 +75,7 @@ def read_intact_skulls(
     *,
     threshold: float | None = None,
     skipped: Callable[[str, str], None],
+    warned: Callable[[str, str], None],
     progress: Callable[[str, float], None] | None = None,
 ) -> Iterator[Volume]:
     """Bone masks of those scans that show a whole, closed skull, one at a time.
@@ -87,6 +88,8 @@ def read_intact_skulls(
         Lowest HU of bone in a CT; the package's default when not given.
     skipped : callable
         Called with (name, why) for every other scan.
+    warned : callable
+        Called with (name, sentence) for all that a scan warns of.
     progress : callable, optional
         Called with (step, fraction).
 
@@ -100,12 +103,14 @@ def read_intact_skulls(
             progress("reading", i / len(scans))
         # a scan that cannot be used is told about, and the next one read
         try:
-            scan = read_ct(path)[0]
+            scan, load = read_ct(path)
             bone = bone_of(scan, None if scan.voxels.dtype == bool else threshold)
             check_intact(bone, scan)
         except CranioError as error:
             skipped(path.name, error.message)
             continue
+        for one in warnings_of(load.findings):
+            warned(path.name, one.message)
         yield bone
 
 

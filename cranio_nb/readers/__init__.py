@@ -9,7 +9,7 @@
 All end in the package's own axes (planes up, rows back, columns left) and in LPS mm.
 """
 
-from .load_report import Finding, LoadReport
+from .load_report import Finding, LoadReport, warnings_of
 from .read import ALLOWANCES, read_ct
 
-__all__ = ["ALLOWANCES", "Finding", "LoadReport", "read_ct"]
+__all__ = ["ALLOWANCES", "Finding", "LoadReport", "read_ct", "warnings_of"]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from ..grid import Affine, AxisOrder
@@ -29,6 +30,29 @@ class Finding:
     severity: str
     message: str
     values: dict[str, Any] = field(default_factory=dict)
+
+
+def warnings_of(findings: Iterable[Finding], what: str = "") -> tuple[Finding, ...]:
+    """Those findings that a person has to check.
+
+    Parameters
+    ----------
+    findings : iterable of Finding
+    what : str
+        What was read, named before each sentence; nothing when empty.
+
+    Returns
+    -------
+    tuple of Finding
+
+    Examples
+    --------
+    >>> found = Finding("ThickSlices", "warning", "The slices are thick."), Finding("OneSeries", "info", "One series.")
+    >>> [one.message for one in warnings_of(found, "truth.nii.gz")]
+    ['truth.nii.gz: The slices are thick.']
+    """
+    said = f"{what}: " if what else ""
+    return tuple(replace(one, message=said + one.message) for one in findings if one.severity == "warning")
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputRefused
-from ..pipeline.preparation import check_truth_mask
-from ..readers import read_ct
+from ..pipeline.preparation import read_truth
+from ..readers import Finding, read_ct, warnings_of
 from ..volume import Volume
 
 _STEP_MM = 5  # by which a hole shrinks until it fits its skull
@@ -52,6 +52,25 @@ class Case:
         """
         asked = self.source
         return {"defect": asked.get("defect", ""), "seed": asked.get("seed"), "asked_mm": asked.get("diameter_mm")}
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedCase:
+    """A case as it was read or made.
+
+    Parameters
+    ----------
+    scan : Volume
+        HU, or a bool mask of the bone.
+    truth : Volume or None
+        Bool mask of the missing bone, on the same grid.
+    warnings : tuple of Finding
+        What the files warn of.
+    """
+
+    scan: Volume
+    truth: Volume | None
+    warnings: tuple[Finding, ...] = ()
 
 
 def scan_cases(
@@ -151,7 +170,7 @@ def cut_case(
     return Case(f"{path}-{defect}-{diameter_mm or 'own'}-{seed}", "cut", source, str(folder))
 
 
-def load_case(case: Case) -> tuple[Volume, Volume | None]:
+def load_case(case: Case) -> LoadedCase:
     """Read or make a case.
 
     Parameters
@@ -160,10 +179,7 @@ def load_case(case: Case) -> tuple[Volume, Volume | None]:
 
     Returns
     -------
-    scan : Volume
-        HU, or a bool mask of the bone.
-    truth : Volume or None
-        Bool mask of the missing bone, on the same grid.
+    LoadedCase
 
     Raises
     ------
@@ -172,23 +188,21 @@ def load_case(case: Case) -> tuple[Volume, Volume | None]:
 
     Examples
     --------
-    >>> scan, truth = load_case(phantom_cases(["burr_hole"], [0], size="tiny")[0])
-    >>> scan.shape, truth.voxels.any()
+    >>> made = load_case(phantom_cases(["burr_hole"], [0], size="tiny")[0])
+    >>> made.scan.shape, made.truth.voxels.any()
     ((44, 128, 128), np.True_)
     """
     return SOURCES[case.kind](Path(case.folder), **case.source)
 
 
-def _scan(folder: Path, path: str, truth: str | None, mask: bool | None) -> tuple[Volume, Volume | None]:
+def _scan(folder: Path, path: str, truth: str | None, mask: bool | None) -> LoadedCase:
     """A scan on disk."""
-    scan = read_ct(folder / path, mask=mask)[0]
-    known = None if truth is None else read_ct(folder / truth, mask=True)[0]
-    if known is not None:
-        check_truth_mask(known, scan)
-    return scan, known
+    scan, load = read_ct(folder / path, mask=mask)
+    known, said = (None, ()) if truth is None else read_truth(folder / truth, scan)
+    return LoadedCase(scan, known, (*warnings_of(load.findings), *said))
 
 
-def _phantom(folder: Path, head: str, size: str, defect: str, seed: int) -> tuple[Volume, Volume | None]:
+def _phantom(folder: Path, head: str, size: str, defect: str, seed: int) -> LoadedCase:
     """A synthetic head."""
     from data_synth import head_case
 
@@ -196,12 +210,10 @@ def _phantom(folder: Path, head: str, size: str, defect: str, seed: int) -> tupl
         made = head_case(head, size, defect, seed)
     except ValueError as error:
         raise InputRefused("CannotCut", str(error)) from error
-    return Volume(made.bone if made.hu is None else made.hu, made.affine), Volume(made.implant, made.affine)
+    return LoadedCase(Volume(made.bone if made.hu is None else made.hu, made.affine), Volume(made.implant, made.affine))
 
 
-def _cut(
-    folder: Path, path: str, defect: str, seed: int, diameter_mm: int | None, mask: bool | None
-) -> tuple[Volume, Volume | None]:
+def _cut(folder: Path, path: str, defect: str, seed: int, diameter_mm: int | None, mask: bool | None) -> LoadedCase:
     """A hole cut into a whole skull, as wide as it fits."""
     from data_synth import cut_case as open_skull
 
@@ -216,9 +228,10 @@ def _cut(
                 break
         else:
             scan = made.bone if made.hu is None else made.hu
-            return whole.with_voxels(scan), whole.with_voxels(np.asarray(made.implant))
+            truth = whole.with_voxels(np.asarray(made.implant))
+            return LoadedCase(whole.with_voxels(scan), truth, warnings_of(load.findings))
     raise InputRefused("CannotCut", reason or f"No hole of the kind {defect} fits this skull.")
 
 
-SOURCES: dict[str, Callable[..., tuple[Volume, Volume | None]]] = {"scan": _scan, "phantom": _phantom, "cut": _cut}
+SOURCES: dict[str, Callable[..., LoadedCase]] = {"scan": _scan, "phantom": _phantom, "cut": _cut}
 """The kinds of cases: each reads or makes one, ``(folder, **source)``."""

@@ -1,7 +1,8 @@
-"""What failed: by reason, and a picture of the skulls that it failed on."""
+"""What failed and what was warned of: by reason, and a picture of the skulls that runs failed on."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -63,6 +64,43 @@ def reasons(columns: Columns) -> list[Reason]:
     return sorted(found, key=lambda reason: -reason.runs)
 
 
+@dataclass(frozen=True)
+class Warned:
+    """A warning, and the cases that it is about.
+
+    Parameters
+    ----------
+    code, message : str
+        The message is that of the first case.
+    cases : tuple of str
+    """
+
+    code: str
+    message: str
+    cases: tuple[str, ...]
+
+
+def warned(columns: Columns) -> list[Warned]:
+    """What a person has to check in the cases: doubtful openings that were left open, thick slices and the like.
+
+    Parameters
+    ----------
+    columns : Columns
+
+    Returns
+    -------
+    list of Warned
+        That of most cases first.
+    """
+    found: dict[str, tuple[str, dict[str, None]]] = {}
+    for case, said in dict(zip(columns["case"], columns["warnings"], strict=True)).items():
+        for sentence in json.loads(said or "[]"):
+            code, message = sentence.split(": ", 1)
+            found.setdefault(code, (message, {}))[1][case] = None
+    made = [Warned(code, message, tuple(cases)) for code, (message, cases) in found.items()]
+    return sorted(made, key=lambda one: -len(one.cases))
+
+
 def failure_shots(found: Sequence[Reason], cases: Sequence[Case], most: int = 6) -> list[Shot]:
     """Pictures of skulls that runs failed on, of each reason one before any gets a second.
 
@@ -94,8 +132,8 @@ def failure_shots(found: Sequence[Reason], cases: Sequence[Case], most: int = 6)
 def _case_shot(case: Case, why: str) -> Shot | None:
     """A case from the side of what is missing; None where it cannot be read or holds no bone."""
     try:
-        scan, truth = load_case(case)
-        bone = segment(scan)
+        made = load_case(case)
+        bone, truth = segment(made.scan), made.truth
     except Exception:  # whatever keeps it from being read is among the reasons already
         return None
     missing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp)) if truth is None else extract_surface(truth)

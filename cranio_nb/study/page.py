@@ -13,7 +13,7 @@ import numpy as np
 from ..output.pages import Shot, page_template
 from ..pipeline.compare import MEASURES
 from .best import target_of
-from .failures import Reason
+from .failures import Reason, warned
 from .parts import Part
 from .store import Columns
 from .summaries import counts
@@ -65,5 +65,6 @@ def study_page(
         target_key=target,
         parts=parts,
         reasons=why,
+        warned=warned(columns),
         failures=failures,
     )

@@ -36,13 +36,13 @@ SCHEMA = pa.schema(
         *((name, pa.float64()) for name in ("asked_mm", "threshold_hu", "length_mm")),
         ("place", pa.string()),
         ("n_openings", pa.int64()),
-        *((name, pa.string()) for name in ("status", "code", "message")),
+        *((name, pa.string()) for name in ("warnings", "status", "code", "message")),
         *((name, pa.float64()) for name in MEASURES),
         ("written_s", pa.float64()),
     ]
 )
-"""A row: what it is of, what the skull is like (lengths in mm), how it ended, the `MEASURES` in their units, and
-when it was written (s since 1970)."""
+"""A row: what it is of, what the skull is like (lengths in mm), what its scan warns of (a JSON list), how it ended, the
+`MEASURES` in their units, and when it was written (s since 1970)."""
 Columns = dict[str, NDArray[Any]]
 """Rows as a column for each name: numbers as float64 with nan for none, text as objects with "" for none."""
 PLAN, ROWS = "study.json", "rows"

@@ -7,6 +7,7 @@ Memory: one case with its masks, and what one method needs; nothing is kept betw
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,10 +16,13 @@ from ..methods.transfer import unpack_methods
 from ..opening import Opening
 from ..pipeline.compare import Reference, measure
 from ..pipeline.preparation import openings_to_close
-from ..pipeline.survey import survey_scan
+from ..pipeline.survey import Survey, survey_scan
 from ..pipeline.trial import Attempt, Contender, status_of
+from ..readers import warnings_of
+from ..vault.opening_choice import JudgedOpening
 from ..vault.opening_size import measure_opening
-from .cases import Case, load_case
+from ..vault.remarks import opening_remarks
+from .cases import Case, LoadedCase, load_case
 
 Row = dict[str, Any]
 
@@ -71,16 +75,17 @@ def do_batch(batch: Batch, methods: bytes, attempt: Attempt) -> list[Row]:
     """
     unpack_methods(methods)
     try:
-        scan, truth = load_case(batch.case)
-        seen = survey_scan(scan, batch.threshold_hu)
-        openings = tuple(one.opening for one in openings_to_close(seen))
-        reference = None if truth is None else Reference.of(truth, seen.bone, openings[0])
+        made = load_case(batch.case)
+        seen = survey_scan(made.scan, batch.threshold_hu)
+        closed = openings_to_close(seen)
+        openings, warned = tuple(one.opening for one in closed), _warnings(made, seen, closed)
+        reference = None if made.truth is None else Reference.of(made.truth, seen.bone, openings[0])
     except Exception as error:
         return failed_rows(batch, **_reason(error))
-    del scan, truth  # the methods get the bone only
+    del made  # the methods get the bone only
     rows = _heads(batch)
     for row, contender in zip(rows, batch.contenders, strict=True):
-        row |= _sizes(openings)
+        row |= _sizes(openings) | {"warnings": warned}
         try:
             trial = attempt(seen.bone, openings, contender)
             measures = measure(trial, seen.bone, reference)
@@ -126,6 +131,13 @@ def _sizes(openings: tuple[Opening, ...]) -> Row:
     """What the skull is like: place and length of the largest opening, and how many there are."""
     largest = measure_opening(openings[0])
     return {"place": largest.place, "length_mm": largest.length, "n_openings": len(openings)}
+
+
+def _warnings(made: LoadedCase, seen: Survey, closed: Sequence[JudgedOpening]) -> str:
+    """What a person has to check, as a JSON list of "Name: sentence"."""
+    left_open = [one for one in seen.found if one not in closed]
+    found = warnings_of((*made.warnings, *seen.remarks, *opening_remarks(closed, left_open)))
+    return json.dumps([f"{one.code}: {one.message}" for one in found])
 
 
 def _reason(error: Exception) -> dict[str, str]:

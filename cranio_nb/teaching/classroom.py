@@ -11,6 +11,7 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
+import warnings
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
@@ -25,7 +26,7 @@ from skimage.morphology import skeletonize
 from ..curves import GapEnds
 from ..errors import InputRefused
 from ..opening import Opening
-from ..readers import read_ct
+from ..readers import read_ct, warnings_of
 from ..stages import feature_extraction
 from ..volume import Volume
 
@@ -149,12 +150,12 @@ def load(
             "or unset CRANIO_NB_SCAN.",
         )
     if path:
-        from ..pipeline.preparation import check_truth_mask
+        from ..pipeline.preparation import read_truth
 
-        ct = read_ct(path)[0]
-        mask = read_ct(known, mask=True)[0] if known else None
-        if mask is not None:
-            check_truth_mask(mask, ct)
+        ct, load = read_ct(path)
+        mask, said = read_truth(known, ct) if known else (None, ())
+        for one in (*warnings_of(load.findings), *said):
+            warnings.warn(one.message, stacklevel=2)
         return LessonCase(ct, mask, None)
     return synthetic(os.environ.get("CRANIO_NB_SIZE") or size, defect, seed)
 

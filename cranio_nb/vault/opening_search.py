@@ -35,7 +35,7 @@ from .smallest_hole import LEAST_MM, THICK_MM, smallest_hole_mm
 from .thin_bone import SOFT_HU, Material
 from .verdict import Signs, judge
 
-_MIDDLE = 0.7  # of the distance from the rim to the innermost ray
+_MIDDLE, _BLUR_MM = 0.7, 4.0  # of the distance from the rim to the innermost ray; from the rim, in which it is blurred
 _ABOVE_MM, _BULGE = 2.0, 0.2  # by which bone may stand above the surface bridged from the rim; and for each mm to it
 _AROUND_MM = 12.0  # of the sheet of an opening: as thick as the vault is
 _WALL_MM = 16.0  # under the outer surface, beyond which bone is another wall
@@ -207,9 +207,9 @@ def _signs(
 ) -> Signs:
     """What an opening and its surroundings show."""
     grid, step_mm = outermost.grid, np.radians(STEP_DEG) * outermost.typical_radius
-    # bone in the middle of the opening, away from the blurred rim
-    width = ndimage.distance_transform_edt(rays)
-    middle = width >= _MIDDLE * width.max()
+    # bone in the opening away from the blurred rim, of most of it: a drain that crosses it is no bone
+    width, blur_mm = ndimage.distance_transform_edt(rays), max(_BLUR_MM, float(bone.spacing.max()))
+    middle = width >= min(_MIDDLE * width.max(), blur_mm / step_mm)
     above_mm = _ABOVE_MM + _BULGE * width.max() * step_mm
     across = material.thickness(grid.centre, grid.directions[middle], radius[middle], above_mm=above_mm)
     rim = ndimage.binary_dilation(rays, iterations=2) & np.isfinite(outermost.radius)
@@ -224,6 +224,7 @@ def _signs(
         two_walls=float(is_bone[:, depths < -_WALL_MM].any(axis=1).mean()),
         rim_mm=float(np.median(is_bone[:, depths >= -_WALL_MM].sum(axis=1) * 0.5)),
         frame=frame.confidence,
+        covered=float((across > 0).mean()),
         with_hu=material.volume.voxels.dtype != bool,
     )
 

@@ -17,6 +17,7 @@ _BASE_SHARE, _VAULT_SHARE = 0.1, 0.3  # of an opening above the base: natural up
 _ACROSS_MM, _PLAIN_MM = 0.1, 0.8  # of bone in the middle of an opening: what was cut out left none; plainly bone
 _BLURRED_MM = 15.0  # width of a hole into which coarse voxels blur its rim
 _BLUR_SHARE = 0.5  # of its rim, which a blurred hole leaves less than: its width is that at half height
+_FULL_MM, _ALL = 4.0, 0.9  # a rim as thick as a vault, where no bone wears away; share across which a film of bone lies
 _PAPER_MM, _SMALL_MM = 1.5, 30.0  # a small hole whose rim is as thin as paper was not cut
 _HALF = 0.5  # of an opening above the base: from there on walls behind its rim leave a doubt only
 
@@ -30,7 +31,7 @@ class Signs:
     diameter_mm : float
         Of a disk of the same area.
     across_mm : float
-        Thickness of the bone that lies across the middle of the opening, below the threshold.
+        Thickness of the bone, below the threshold, that lies across most of the opening away from its rim.
     on_vault : float
         Share of the opening above the line between vault and base.
     two_walls : float
@@ -41,6 +42,8 @@ class Signs:
         Confidence in how the head lies.
     plain : bool
         Whether it is wide enough for these slices and reaches into the vault; else there is no more than a hint of it.
+    covered : float
+        Share of the opening, away from its rim, across which bone lies.
     with_hu : bool
         Whether `across_mm` was measured in HU; a mask shows no bone below the threshold.
     """
@@ -52,6 +55,7 @@ class Signs:
     rim_mm: float
     frame: float
     plain: bool = True
+    covered: float = 1.0
     with_hu: bool = True
 
 
@@ -113,6 +117,12 @@ RULES = (
         f" {100 * _BLUR_SHARE:g} % of its rim's thickness, and it is narrower than {_BLURRED_MM:g} mm",
         lambda s: _ACROSS_MM <= s.across_mm < max(_PLAIN_MM, _BLUR_SHARE * s.rim_mm) and s.diameter_mm < _BLURRED_MM,
         lambda s: Verdict(True, 0.4, "Some bone lies across it: thin bone, or a small hole blurred by the slices."),
+    ),
+    Rule(
+        f"{_ACROSS_MM:g} mm of bone or more lie across half of it, but across less than {100 * _ALL:g} %; its rim is"
+        f" {_FULL_MM:g} mm thick or more, and {100 * _BASE_SHARE:g} % of it or more lie above the base",
+        lambda s: s.across_mm >= _ACROSS_MM and s.covered < _ALL and s.rim_mm >= _FULL_MM and s.on_vault >= _BASE_SHARE,
+        lambda s: Verdict(False, 0.4, "Something dense lies across a part of it, as a drain does; its rim is thick."),
     ),
     Rule(
         f"{_ACROSS_MM:g} mm of bone or more lie across its middle",

@@ -45,7 +45,8 @@ def test_all_commands_agree_on_what_is_intact(head, tmp_path):
     designed = cranio("design", path, "--method", "hull", "--out", tmp_path / "designed")
     cut = cranio("phantom", tmp_path / "cut", "--from", path)
     skipped = []
-    learned = list(read_intact_skulls([path], threshold=400.0, skipped=lambda name, why: skipped.append(why)))
+    told = {"skipped": lambda name, why: skipped.append(why), "warned": lambda name, why: None}
+    learned = list(read_intact_skulls([path], threshold=400.0, **told))
     assert looked.exit_code == designed.exit_code == (4 if is_intact else 0), looked.output
     assert cut.exit_code == (0 if is_intact else 3) and (tmp_path / "cut").exists() == is_intact
     assert len(learned) == is_intact and len(skipped) == (not is_intact)

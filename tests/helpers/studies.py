@@ -36,7 +36,7 @@ def rows_for(batch: Any, *_: Any) -> list[dict[str, Any]]:
 
 def columns(n: int, **given: Any) -> dict[str, np.ndarray]:
     """Rows as columns: done, all measures nan, but for what is given."""
-    text = dict.fromkeys(("key", "version", "kind", "defect", "place", "code", "message"), "")
+    text = dict.fromkeys(("key", "version", "kind", "defect", "place", "warnings", "code", "message"), "")
     text |= {"case": "a", "contender": "slicewise", "method": "slicewise", "options": "{}", "status": "done"}
     numbers = ("seed", "asked_mm", "threshold_hu", "length_mm", "n_openings", *MEASURES, "written_s")
     found = {name: np.full(n, value, object) for name, value in text.items()}

@@ -51,5 +51,5 @@ def test_all_pictures_of_a_view_are_seen_from_one_side(found, monkeypatch):
 def test_without_a_truth(blind):
     page = Page(comparison_page.comparison_page(blind))
     assert len(page.all("img")) == 2 * 2 + 2 + 1 + 2
-    # openings, the rule by which they were judged, what was measured, how far the patches agree
-    assert len(page.all("table")) == 4 and "the surface of moved" in " ".join(page.words)
+    # what the slices hide, openings, the rule by which they were judged, what was measured, how far the patches agree
+    assert len(page.all("table")) == 5 and "the surface of moved" in " ".join(page.words)

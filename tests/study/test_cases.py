@@ -23,7 +23,8 @@ def folder(tmp_path, phantom):
 
 def test_a_phantom_is_the_one_of_its_seed(phantom):
     (case,) = phantom_cases(["burr_hole"], [0], size="tiny")
-    scan, truth = load_case(case)
+    made = load_case(case)
+    scan, truth = made.scan, made.truth
     np.testing.assert_array_equal(scan.voxels, phantom("burr_hole", 0).hu)
     np.testing.assert_array_equal(truth.voxels, phantom("burr_hole", 0).implant)
     assert case.facts == {"defect": "burr_hole", "seed": 0, "asked_mm": None}
@@ -31,15 +32,17 @@ def test_a_phantom_is_the_one_of_its_seed(phantom):
 
 def test_a_scan_comes_with_the_truth_beside_it(folder, phantom):
     (case,) = scan_cases(["one/skull.nii.gz"], truth="truth.nii.gz", folder=folder)
-    bone, truth = load_case(case)
+    made = load_case(case)
+    bone, truth = made.scan, made.truth
     np.testing.assert_array_equal(bone.voxels, phantom("burr_hole", 0).bone)
     np.testing.assert_array_equal(truth.voxels, phantom("burr_hole", 0).implant)
-    assert load_case(scan_cases(["one/skull.nii.gz"], folder=folder)[0])[1] is None
+    assert load_case(scan_cases(["one/skull.nii.gz"], folder=folder)[0]).truth is None
 
 
 def test_a_cut_too_wide_is_made_as_wide_as_fits(folder, phantom):
     whole = phantom("burr_hole", 0).complete
-    bone, truth = load_case(cut_case("whole.nii.gz", "round", 1, diameter_mm=500, folder=folder))
+    made = load_case(cut_case("whole.nii.gz", "round", 1, diameter_mm=500, folder=folder))
+    bone, truth = made.scan, made.truth
     assert truth.voxels.any() and not (bone.voxels & truth.voxels).any()
     np.testing.assert_array_equal(bone.voxels | truth.voxels, whole)
 

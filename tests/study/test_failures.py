@@ -6,7 +6,7 @@ from studies import columns, unreadable
 pytest.importorskip("pyarrow", reason="the extra `study` is not installed")
 
 from cranio_nb.study.cases import phantom_cases
-from cranio_nb.study.failures import failure_shots, reasons
+from cranio_nb.study.failures import failure_shots, reasons, warned
 
 (CASE,) = phantom_cases(["burr_hole"], [0], size="tiny")
 
@@ -19,6 +19,15 @@ def test_are_counted_by_reason_the_most_frequent_first():
         ("A", "refused", 1, ("x",), "2"),
     ]
     assert reasons(columns(2)) == []
+
+
+def test_warnings_are_counted_once_for_a_case_that_of_most_cases_first():
+    said = [*['["B: One of x."]'] * 2, '["A: One.", "B: One of y: here."]', ""]
+    found = warned(columns(4, warnings=said, case=["x", "x", "y", "z"]))
+    assert [(one.code, one.message, one.cases) for one in found] == [
+        ("B", "One of x.", ("x", "y")),
+        ("A", "One.", ("y",)),
+    ]
 
 
 def test_are_shown_where_the_case_can_be_read():

@@ -24,6 +24,13 @@ def test_says_it_all_and_needs_no_other_file():
     assert "&lt;case3&gt;" in page and "<case3>" not in page
 
 
+def test_what_the_scans_warn_of_is_said_before_what_failed():
+    rows = columns(2, dice=[0.5, 0.6], case=["a", "b"], warnings=["[]", '["ThickSlices: The slices are 5 mm apart."]'])
+    page = page_of(rows)
+    assert page.index("The slices are 5 mm apart.") < page.index("What failed")
+    assert "What to check" not in page_of(columns(2, dice=[0.5, 0.6], case=["a", "b"]))
+
+
 def test_a_study_without_parameters_or_values_has_a_page():
     assert "no run has a value" in page_of(columns(1, status="broken", code="Oops"))
     assert "Nothing failed" in page_of(columns(2, dice=[0.5, 0.6], case=["a", "b"]))

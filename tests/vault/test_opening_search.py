@@ -267,3 +267,16 @@ def test_a_hint_across_which_bone_lies_is_left_out():
         hu = np.where(bone.voxels, 1000, np.where(whole.voxels, hu_of_film, 40)).astype(np.int16)
         found = survey_openings(bone, scan=bone.with_voxels(hu))
         assert [one.verdict.kind for one in found] == kinds
+
+
+@pytest.mark.parametrize(
+    ("strip_mm", "kind"), [(0, "cut"), (5, "cut"), (14, "doubtful"), (30, "natural")], ids=lambda value: f"{value}"
+)
+def test_a_drain_over_a_hole_is_no_bone_and_a_film_all_over_it_is(strip_mm, kind):
+    """A hole of 24 mm in a ball of bone, crossed by a strip of 300 HU, 3 mm thick, of some width."""
+    bone = pierced(24.0, 1.0)
+    away_xyz = bone.to_world(np.moveaxis(np.indices(bone.shape), 0, -1)) - 84.0  # from the middle of the ball
+    (x, y, _), away = np.moveaxis(away_xyz, -1, 0), np.linalg.norm(away_xyz, axis=-1)
+    strip = (np.abs(y) < strip_mm / 2) & (x > 0) & (away > 72) & (away < 75) & ~bone.voxels
+    scan = bone.with_voxels(np.where(bone.voxels, 1000, np.where(strip, 300, 40)).astype(np.int16))
+    assert [one.verdict.kind for one in survey_openings(bone, scan=scan)] == [kind]

@@ -9,6 +9,7 @@ from cranio_nb.vault.verdict import RULES, SURE, Signs, Verdict, judge, rule_row
 CUT = Signs(60.0, 0.0, on_vault=1.0, two_walls=0.0, rim_mm=6.0, frame=1.0)
 BY_LINE = [  # signs for which each line of the rule is the first to hold, and what follows
     (replace(CUT, across_mm=0.3, diameter_mm=9.0), "doubtful"),
+    (replace(CUT, across_mm=1.0, covered=0.6), "doubtful"),
     (replace(CUT, across_mm=1.0), "natural"),
     (replace(CUT, rim_mm=1.0, diameter_mm=12.0), "natural"),
     (replace(CUT, plain=False), "doubtful"),
@@ -67,18 +68,22 @@ def test_confidence_grows_with_the_vault_and_the_frame():
 @pytest.mark.parametrize(
     ("signs", "name", "limit", "at", "below"),
     [
-        (replace(CUT, diameter_mm=9.0), "across_mm", 0.1, 0, 8),
-        (replace(CUT, diameter_mm=9.0), "across_mm", 3.0, 1, 0),
-        (replace(CUT, diameter_mm=9.0, rim_mm=1.55), "across_mm", 0.8, 1, 0),
-        (replace(CUT, across_mm=0.5), "diameter_mm", 15.0, 1, 0),
-        (CUT, "across_mm", 0.1, 1, 8),
-        (replace(CUT, rim_mm=1.0), "diameter_mm", 30.0, 8, 2),
-        (replace(CUT, diameter_mm=12.0), "rim_mm", 1.5, 8, 2),
-        (CUT, "on_vault", 0.1, 7, 4),
-        (replace(CUT, two_walls=0.9), "on_vault", 0.5, 6, 5),
-        (CUT, "two_walls", 0.5 + 1e-9, 6, 8),
-        (CUT, "on_vault", 0.3, 8, 7),
-        (replace(CUT, frame=0.0), "on_vault", 0.45, 8, 7),
+        (replace(CUT, diameter_mm=9.0), "across_mm", 0.1, 0, 9),
+        (replace(CUT, diameter_mm=9.0), "across_mm", 3.0, 2, 0),
+        (replace(CUT, diameter_mm=9.0, rim_mm=1.55), "across_mm", 0.8, 2, 0),
+        (replace(CUT, across_mm=0.5), "diameter_mm", 15.0, 2, 0),
+        (CUT, "across_mm", 0.1, 2, 9),
+        (replace(CUT, covered=0.6), "across_mm", 0.1, 1, 9),
+        (replace(CUT, across_mm=0.5), "covered", 0.9, 2, 1),
+        (replace(CUT, across_mm=0.5, covered=0.6), "rim_mm", 4.0, 1, 2),
+        (replace(CUT, across_mm=0.5, covered=0.6), "on_vault", 0.1, 1, 2),
+        (replace(CUT, rim_mm=1.0), "diameter_mm", 30.0, 9, 3),
+        (replace(CUT, diameter_mm=12.0), "rim_mm", 1.5, 9, 3),
+        (CUT, "on_vault", 0.1, 8, 5),
+        (replace(CUT, two_walls=0.9), "on_vault", 0.5, 7, 6),
+        (CUT, "two_walls", 0.5 + 1e-9, 7, 9),
+        (CUT, "on_vault", 0.3, 9, 8),
+        (replace(CUT, frame=0.0), "on_vault", 0.45, 9, 8),
     ],
 )
 def test_another_line_decides_from_a_limit_on(signs, name, limit, at, below):
@@ -88,7 +93,7 @@ def test_another_line_decides_from_a_limit_on(signs, name, limit, at, below):
 
 def test_the_table_gives_the_confidence_of_each_line_at_the_ends_of_the_signs():
     assert [row[2] for row in rule_rows()] == [
-        *("0.40", "0.90", "0.70", "0.40", "0.50 to 1.00", "0.80", "0.40", "0.45", "0.60 to 1.00")
+        *("0.40", "0.40", "0.90", "0.70", "0.40", "0.50 to 1.00", "0.80", "0.40", "0.45", "0.60 to 1.00")
     ]
 
 
