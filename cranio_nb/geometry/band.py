@@ -21,6 +21,8 @@ from threadpoolctl import ThreadpoolController
 
 Array = NDArray[np.float64]
 
+_libraries = lru_cache(maxsize=1)(ThreadpoolController)  # looking for them takes longer than to solve
+
 
 def band_of(matrix: sparse.sparray) -> Array:
     """The band of a sparse symmetric matrix.
@@ -113,9 +115,3 @@ def one_thread() -> Iterator[None]:
     """
     with _libraries().limit(limits=1, user_api="blas"):
         yield
-
-
-@lru_cache(maxsize=1)  # looking for them takes longer than to solve
-def _libraries() -> ThreadpoolController:
-    """The libraries in this process that compute by threads."""
-    return ThreadpoolController()

@@ -16,9 +16,10 @@ from ..vault.opening_choice import JudgedOpening
 from ..vault.opening_search import bone_around
 from ..vault.opening_size import OpeningSize
 from ..vault.remarks import opening_remarks
-from ..volume import Volume, same_grid
+from ..volume import Volume
 from .input_digest import digest_volume
 from .survey import Survey, survey_scan
+from .truth_file import read_truth
 
 Progress = Callable[[str, float], None]
 
@@ -239,53 +240,6 @@ def within_planes(openings: tuple[JudgedOpening, ...], planes: tuple[int, int]) 
         message = f"No opening lies in planes {first} to {last}; openings were found in planes {spans}."
         raise NoOpening("NoOpening", message)
     return tuple(parts)
-
-
-def read_truth(path: str | PathLike[str], scan: Volume) -> tuple[Volume, tuple[Finding, ...]]:
-    """Read the mask of the missing bone of a scan.
-
-    Parameters
-    ----------
-    path : path
-    scan : Volume
-
-    Returns
-    -------
-    Volume
-        Bool mask.
-    tuple of Finding
-        What the file warns of.
-
-    Raises
-    ------
-    InputRefused
-        What cannot be read safely, and as `check_truth_mask`.
-    """
-    truth, load = read_ct(path, mask=True)
-    check_truth_mask(truth, scan)
-    return truth, warnings_of(load.findings, "The truth")
-
-
-def check_truth_mask(truth: Volume, scan: Volume) -> None:
-    """Refuse a mask of the missing bone that does not belong to a scan.
-
-    Parameters
-    ----------
-    truth : Volume
-        Bool mask.
-    scan : Volume
-        The scan, on whose grid the mask has to be.
-
-    Raises
-    ------
-    InputRefused
-        ``GridMismatch`` or ``EmptyMask``.
-    """
-    if not same_grid(scan, truth):
-        message = f"The truth has shape {truth.shape}, the scan {scan.shape}, or they lie at different places."
-        raise InputRefused("GridMismatch", message, "Give a truth mask on the scan's own grid.")
-    if not truth.voxels.any():
-        raise InputRefused("EmptyMask", "The truth mask is empty; there is nothing to compare with.")
 
 
 def check_margin(mask: Volume, what: str) -> None:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import InputRefused
-from ..pipeline.preparation import read_truth
+from ..pipeline.truth_file import read_truth
 from ..readers import Finding, read_ct, warnings_of
 from ..volume import Volume
 

@@ -150,7 +150,7 @@ def load(
             "or unset CRANIO_NB_SCAN.",
         )
     if path:
-        from ..pipeline.preparation import read_truth
+        from ..pipeline.truth_file import read_truth
 
         ct, load = read_ct(path)
         mask, said = read_truth(known, ct) if known else (None, ())

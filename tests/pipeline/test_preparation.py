@@ -7,7 +7,7 @@ from hollow_ball import pierced
 import cranio_nb as cn
 from cranio_nb.errors import InputRefused, NoOpening
 from cranio_nb.output.nifti_files import write_nifti
-from cranio_nb.pipeline.preparation import Clock, check_margin, check_truth_mask, prepare, touches_border, within_planes
+from cranio_nb.pipeline.preparation import Clock, check_margin, prepare, touches_border, within_planes
 from cranio_nb.vault.opening_search import survey_openings
 
 
@@ -46,20 +46,6 @@ def test_planes_without_an_opening_and_planes_that_are_none_are_refused(skull):
         with pytest.raises(InputRefused) as refused:
             within_planes((one,), planes)
         assert refused.value.code == "BadPlanes"
-
-
-def test_the_missing_bone_must_lie_on_the_scans_grid(scan, tmp_path, skull, phantom):
-    bone, path = skull("burr_hole"), tmp_path / "truth.nii.gz"
-    truth = cn.Volume(phantom("burr_hole").implant, bone.affine)
-    write_nifti(truth, path)
-    np.testing.assert_array_equal(prepare(scan, truth=path).truth.voxels, truth.voxels)
-    with pytest.raises(InputRefused) as refused:
-        check_truth_mask(truth, bone.crop((slice(1, None), slice(None), slice(None))))
-    assert refused.value.code == "GridMismatch"
-    write_nifti(bone.with_voxels(np.zeros(bone.shape, bool)), path)
-    with pytest.raises(InputRefused) as refused:
-        prepare(scan, truth=path)
-    assert refused.value.code == "EmptyMask"
 
 
 @pytest.mark.parametrize("at", [(0, 2, 2), (4, 2, 2), (2, 0, 2), (2, 4, 2), (2, 2, 0), (2, 2, 4), (2, 2, 2), (1, 3, 1)])
