@@ -35,6 +35,17 @@ _STOPPED: dict[type[BaseException], str] = {
     RecursionError: "The function calls itself without end: when should it stop?",
     MemoryError: "The function wants more memory than there is: what grows without end?",
 }
+_MEANT = (
+    (
+        r"truth value of an array",
+        "`and`, `or`, `not` and `if` ask for one truth value: for arrays there are `&`, `|` and `~`.",
+    ),
+    (
+        r"size (\d+) is different from (\d+)",
+        r"`@` met \2 columns at its left and \1 rows at its right: as many are wanted.",
+    ),
+    (r"'tuple'|tuple indices", "this is a tuple of several values: take them apart, as in `labels, n = ...`."),
+)
 
 
 class _NoAnswerError(Exception):
@@ -121,7 +132,7 @@ def _answer(answer: Callable[..., Any], given: tuple[Any, ...]) -> Any:
     except (Exception, SystemExit) as error:
         if type(error) is NotImplementedError:  # and none of its kinds, which say something else
             raise _NoAnswerError(STUB) from None
-        words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
+        words = f"The function stopped with {type(error).__name__}: {_meant(error)}"
         raise _NoAnswerError(_STOPPED.get(type(error), words)) from None
 
 
@@ -162,6 +173,14 @@ def _same(given: Any, case: Any) -> bool:
     if isinstance(case, np.ndarray):
         return given.shape == case.shape and np.array_equal(given, case)
     return bool(given == case)
+
+
+def _meant(error: BaseException) -> str:
+    """What an error that students often meet means; else its own words."""
+    for pattern, words in _MEANT:
+        if found := re.search(pattern, str(error)):
+            return found.expand(words)
+    return _first_line(error) + _about_shapes(error)
 
 
 def _about_shapes(error: BaseException) -> str:
