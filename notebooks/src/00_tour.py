@@ -148,6 +148,7 @@ player.set(preset="tangent pressure: k from the ends", step=300)
 # %% tags=["nbval-check-output"]
 again = widgets.balloon(outer, inside)
 print(again.set(preset="tangent pressure: k from the ends", step=300).view.line)
+again.set(preset="paper: k as set below")
 for k, step in ((0.062, 300), (-0.1, 0), (-0.1, 38), (-0.1, 300)):
     print(again.set(pressure=k, step=step).view.line)
 
