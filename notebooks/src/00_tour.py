@@ -74,9 +74,9 @@ viewer
 #
 # ## 2. Bone (stage 1)
 #
-# Everything from 400 HU up is bone: so the paper has it, and lesson 02 asks what difference the number makes. Then the
-# couch under the head and loose specks are dropped and small holes are closed. What comes out is a **mask**: True where
-# a voxel is bone, False elsewhere.
+# Everything from 400 HU up is bone: this is the paper's lower bound, and lesson 02 asks what difference it makes. Then
+# the couch under the head and loose specks are dropped and small holes are closed. What comes out is a **mask**: True
+# where a voxel is bone, False elsewhere.
 
 # %% tags=["nbval-check-output"]
 bone = cn.segment(ct, threshold=400)

@@ -208,7 +208,8 @@ print(f"so {more:.0f} rows more: {n_rows + more:.0f} instead of {n_rows}")
 # ## A mistake to make once
 #
 # Files get lost when a folder is copied. A reader that takes `SliceThickness` for the distance and stacks what is there
-# would make the head 2.5 mm shorter, and the prosthesis too. We lose a file of a copy, so that `folder` stays whole.
+# would make the head 2.5 mm shorter, and a prosthesis across the gap too. We lose a file of a copy, so that `folder`
+# stays whole.
 
 # %% tags=["raises-exception"]
 lossy = classroom.scratch_folder(copy_of=folder)
