@@ -121,8 +121,7 @@ def _answer(answer: Callable[..., Any], given: tuple[Any, ...]) -> Any:
     except (Exception, SystemExit) as error:
         if type(error) is NotImplementedError:  # and none of its kinds, which say something else
             raise _NoAnswerError(STUB) from None
-        words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
-        raise _NoAnswerError(_STOPPED.get(type(error), words)) from None
+        raise _NoAnswerError(_why_stopped(error)) from None
 
 
 def _called(cases: list[tuple[Any, ...]], number: int) -> str:
@@ -162,6 +161,14 @@ def _same(given: Any, case: Any) -> bool:
     if isinstance(case, np.ndarray):
         return given.shape == case.shape and np.array_equal(given, case)
     return bool(given == case)
+
+
+def _why_stopped(error: BaseException) -> str:
+    """What a function stopped with, in words that lead on."""
+    if "boolean subtract" in str(error):  # numpy advises ^, either one without the other: no difference of masks
+        return "Masks cannot be subtracted: join them by & and ~."
+    words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
+    return _STOPPED.get(type(error), words)
 
 
 def _about_shapes(error: BaseException) -> str:

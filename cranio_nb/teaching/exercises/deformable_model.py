@@ -109,14 +109,16 @@ EXERCISES: dict[str, Exercise] = {
         right=_tangent_pressure,
         answer=Answer("one number", unit="px per index squared", tolerance=1e-6),
         mistakes=(
-            (lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / n**2, "N counts the steps between snaxels: N = n - 1."),
             (
                 lambda L, a, b, n: L * (np.tan(a) + np.tan(b)) / (n - 1) ** 2,
                 "tan theta1 is negative: adding it takes away what it should give.",
             ),
-            (
-                lambda L, a, b, n: L * (np.tan(np.radians(a)) - np.tan(np.radians(b))) / (n - 1) ** 2,
-                "The angles are in radians already.",
+            *(
+                (
+                    lambda L, a, b, n, turn=turn: L * (np.tan(turn(a)) - np.tan(turn(b))) / (n - 1) ** 2,
+                    "The angles are in radians already, and np.tan takes them so.",
+                )
+                for turn in (np.radians, np.degrees)
             ),
             (
                 lambda L, a, b, n: (np.tan(a) - np.tan(b)) / (n - 1) ** 2,
@@ -159,17 +161,13 @@ EXERCISES: dict[str, Exercise] = {
                     lambda L, a, b, n, at=at: L * (np.tan(a) - np.tan(b)) / (n + at) ** 2,
                     "N counts the steps between snaxels: N = n - 1.",
                 )
-                for at in (1, -2)
+                for at in (0, 1, -2)
             ),
             (lambda L, a, b, n: L * (np.sin(a) + np.sin(b)) / (n - 1) ** 2, "A slope is a tangent, not a sine."),
             (lambda L, a, b, n: L * (np.cos(a) - np.cos(b)) / (n - 1) ** 2, "A slope is a tangent, not a cosine."),
             (
                 lambda L, a, b, n: L * abs(np.tan(a) + np.tan(b)) / (n - 1) ** 2,
                 "tan theta1 is negative: adding it takes away what it should give.",
-            ),
-            (
-                lambda L, a, b, n: L * (np.tan(np.degrees(a)) - np.tan(np.degrees(b))) / (n - 1) ** 2,
-                "The angles are in radians already, and np.tan takes them so.",
             ),
             *(
                 (
@@ -224,6 +222,10 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda L, a, b, n: _relaxed(L, a, b, n, -_tangent_pressure(L, a, b, n)),
                 "The balloon goes into the head: k must be positive here.",
+            ),
+            (
+                lambda L, a, b, n: _relaxed(L, a, b, n, 2 * L * np.tan(a) / (n - 1) ** 2),
+                "In k the first end is taken for both: the gap need not be symmetric.",
             ),
             (_mirrored, "The whole curve lies on the wrong side of the chord."),
             (lambda L, a, b, n: _relaxed(L, a, b, n, 0.0), "Without pressure tension pulls the curve flat."),

@@ -78,6 +78,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda v, f: (v[f[:, 0]] @ np.cross(v[f[:, 1]], v[f[:, 2]]).T).sum() / 6,
                 "`@` takes every face with every other: multiply row by row, (a * ...).sum().",
             ),
+            (
+                lambda v, f: (v[f[0]] * np.cross(v[f[1]], v[f[2]])).sum() / 6,
+                "faces[0] is the first face; the first corners of all faces are faces[:, 0].",
+            ),
         ),
         hints=(
             "Each face and the origin make a tetrahedron.",

@@ -75,6 +75,7 @@ WRONG = {
         (f"k = deformable_model.PAPER_PRESSURE; {END}", "paper's k"),
         (f"k = -deformable_model.tangent_pressure(length, theta0, theta1, n); {END}", "into the head"),
         (f"k = 0; {END}", "flat"),
+        (f"k = 2 * length * np.tan(theta0) / (n - 1) ** 2; {END}", "first end is taken for both"),
         ("return np.linspace([0, 0], [length, 0], n)", "chord"),
         ("return cubic(length, theta0, theta1, n)", "start curve"),
         ("return spiral(length, theta0, theta1, n)[0]", "spiral"),

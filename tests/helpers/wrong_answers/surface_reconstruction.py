@@ -22,6 +22,7 @@ WRONG = {
             "This is the area of the surface",
         ),
         ("return len(faces) / 6", "does not use `vertices`"),
+        ("a, b, c = (vertices[faces[i]] for i in range(3)); return (a * np.cross(b, c)).sum() / 6", "first face"),
         (
             ("a, b, c = vertices[:, 0], vertices[:, 1], vertices[:, 2]; return np.dot(a, np.cross(b, c)) / 6"),
             "stopped with ValueError",
