@@ -35,6 +35,14 @@ _STOPPED: dict[type[BaseException], str] = {
     RecursionError: "The function calls itself without end: when should it stop?",
     MemoryError: "The function wants more memory than there is: what grows without end?",
 }
+_POWER = "A power is written `**`: `^` is either one without the other."
+_CAUSES = {
+    "boolean subtract": "Masks cannot be subtracted: join them by & and ~.",  # numpy advises ^, another wrong answer
+    "for ^": _POWER,
+    "'bitwise_xor' not supported": _POWER,
+    "truth value of an array": "`and`, `or`, `not` and `if` want one value, not an array: join masks by &, | and ~.",
+}
+"""Words of an error, and what is said instead of them."""
 
 
 class _NoAnswerError(Exception):
@@ -165,8 +173,9 @@ def _same(given: Any, case: Any) -> bool:
 
 def _why_stopped(error: BaseException) -> str:
     """What a function stopped with, in words that lead on."""
-    if "boolean subtract" in str(error):  # numpy advises ^, either one without the other: no difference of masks
-        return "Masks cannot be subtracted: join them by & and ~."
+    for found, cause in _CAUSES.items():
+        if found in str(error):
+            return cause
     words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
     return _STOPPED.get(type(error), words)
 
