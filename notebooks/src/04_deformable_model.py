@@ -145,10 +145,10 @@ diagrams.snaxel_forces(90.0, theta, np.pi - theta, pressure=0.062)
 # and a rising one is no fault; $\lVert dc\rVert$ is what counts.
 #
 # **Predict, then move, then explain.** The panel begins at the start curve (step 0): press play, or put `step` to its
-# end. (a) Choose the preset *paper*: does the curve come to rest above or below the dashed start? (b) Double N at the same `k`
-# (21 -> 41 snaxels): twice as high, four times, or the same? Set `dt` to 4, for the picture stops after 300 steps. (c)
-# Turn `k` negative. (d) Does the energy fall in all of these, and with k = 0.4? (No sliders? Use
-# `panel.set(n=41, dt=4, step=300)` and the like in a new cell; `k` is called `pressure`.)
+# end. (a) Choose the preset *paper*: does the curve come to rest above or below the dashed start? (b) Double N at the
+# same `k` (21 -> 41 snaxels, under *more settings*): twice as high, four times, or the same? Set `dt` to 4, for the
+# picture stops after 300 steps. (c) Turn `k` negative. (d) Does the energy fall in all of these, and with k = 0.4? (No
+# sliders? Use `panel.set(n=41, dt=4, step=300)` and the like in a new cell; `k` is called `pressure`.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.balloon(outer, inside, background=bone.voxels[plane], truth=truth, px=case.px)
@@ -284,8 +284,8 @@ for chord, made in zip(chords, paper, strict=True):
 # %% [markdown]
 # The true height grows with the square of the gap, more than sevenfold. The balloon's only doubles. Where do its few px
 # come from, if the parabola is 3.1 px high in every gap? From the clamp. Let $m = L\tan\theta/N$ be the slope that an
-# end is held to. The parabola starts with the slope $kN/2$ instead. Next to each end the fourth difference makes good
-# for the difference: there the curve at rest is the parabola plus $a\,(1 - r^i)$. Two conditions fix $r$ and $a$. At rest
+# end is held to. The parabola starts with the slope $kN/2$ instead. Next to each end the fourth difference makes up
+# for this: there the curve at rest is the parabola plus $a\,(1 - r^i)$. Two conditions fix $r$ and $a$. At rest
 # tension and rigidity of the added part balance: its second difference equals its fourth. A second difference turns
 # $r^i$ into $(r - 2 + r^{-1})\,r^i$, a fourth does so twice; so this factor equals its own square, and is 1. And the
 # clamp holds the slope across the end, $(c_1 - c_{-1})/2 = m$, with a snaxel $c_{-1}$ thought beyond it:
@@ -367,6 +367,7 @@ fig, (left, right) = pictures.axes(2)
 pictures.plot_lines(left, chords, errors, xlabel="gap L (px)", ylabel="largest error (px)")
 heights = {name: balloons[2].curve[:, 1] for name, balloons in ways.items()}
 pictures.plot_lines(right, range(21), heights, xlabel="snaxel", ylabel="height (px)")
+left.set(xticks=chords)
 right.set(title="at rest, gap of 120 px", xticks=range(0, 21, 5))
 alt = "Left: the paper's error grows steeply, the others stay small. Right: three arches."
 pictures.picture(
@@ -375,9 +376,9 @@ pictures.picture(
 
 # %% [markdown]
 # **Is a balloon needed at all?** Look at the last row printed: with exact tangents the start curve is nearly as good as
-# the balloon, and the start spiral is the circle itself (the package starts from it by default). But lesson 03 found tangents
-# that are some degrees off. Let us turn them by 5 degrees in each way there is, and then by chance: 300 times both
-# ends, each by itself, by 4 degrees (standard deviation).
+# the balloon, and the start spiral is the circle itself (the package starts from it by default). But lesson 03 found
+# tangents that are some degrees off. Let us turn them by 5 degrees in each way there is, and then by chance: 300 times
+# both ends, each by itself, by 4 degrees (standard deviation).
 #
 # **Predict:** in which of these does the balloon help most, and in which not at all?
 
@@ -452,9 +453,9 @@ pictures.picture(fig, alt, f"median error (px): {medians}")
 # <details>
 # <summary>Answer</summary>
 #
-# Snaxels of the cubic are evenly spaced along the *chord*, and the curve at rest is nearly a parabola. A circle is a parabola
-# only as long as it is flat. Steep ends (25 degrees in the gap of 160 px, section 3) make the difference plain; the
-# spiral works with arc length and has none of this.
+# Snaxels of the cubic are evenly spaced along the *chord*, and the curve at rest is nearly a parabola. A circle is a
+# parabola only as long as it is flat. Steep ends (25 degrees in the gap of 160 px, section 3) make the difference
+# plain; the spiral works with arc length and has none of this.
 #
 # </details>
 #

@@ -199,8 +199,8 @@ assert size == 84 + 50 * len(made.mesh.faces)
 print(f"prosthesis.stl: {size} bytes = 84 + 50 x {len(made.mesh.faces)} faces")
 
 # %% [markdown]
-# An STL file is a header of 84 bytes and then 50 bytes for each face: its normal and its corners, as plain numbers.
-# So it knows no unit. Everybody assumes mm; 3MF, a younger format, says so.
+# An STL file is a header of 84 bytes and then 50 bytes for each face: its normal and its corners, as plain numbers of 4
+# bytes, and 2 bytes to spare. So it knows no unit. Everybody assumes mm; 3MF, a younger format, says so.
 #
 # ## A mistake to make once
 #
