@@ -324,8 +324,8 @@ print(f"balloon times {measured[-1] / measured[0]:.1f}")
 # $$k = \frac{L\,(\tan\theta_0 - \tan\theta_1)}{N^2}$$
 #
 # This is `tangent_pressure`. There is a second reading: a curve with snaxels $h$ apart and radius $R$ turns by $h/R$ at
-# each, so $k = h^2/R$. If the curvature is known all along the curve, `k` may follow it (`curvature_pressure`). The
-# **Euler spiral** (curvature linear in arc length) joins two points with given tangents; between equal ends it is an
+# each, and its second difference is $h$ times that: $k = h^2/R$. If the curvature is known all along the curve, `k` may
+# follow it (`curvature_pressure`). The **Euler spiral** (curvature linear in arc length) joins two points with given tangents; between equal ends it is an
 # exact circle. The package starts from it by default.
 
 
@@ -376,9 +376,9 @@ pictures.picture(
 
 # %% [markdown]
 # **Is a balloon needed at all?** Look at the last row printed: with exact tangents the start curve is nearly as good as
-# the balloon, and the start spiral is the circle itself (the package starts from it by default). But lesson 03 found
-# tangents that are some degrees off. Let us turn them by 5 degrees in each way there is, and then by chance: 300 times
-# both ends, each by itself, by 4 degrees (standard deviation).
+# the balloon, and the start spiral is the circle itself. But lesson 03 found tangents that are some degrees off. Let us
+# turn them by 5 degrees in each way there is, and then by chance: 300 times both ends, each by itself, by 4 degrees
+# (standard deviation).
 #
 # **Predict:** in which of these does the balloon help most, and in which not at all?
 
