@@ -325,8 +325,8 @@ print(f"balloon times {measured[-1] / measured[0]:.1f}")
 #
 # This is `tangent_pressure`. There is a second reading: a curve with snaxels $h$ apart and radius $R$ turns by $h/R$ at
 # each, and its second difference is $h$ times that: $k = h^2/R$. If the curvature is known all along the curve, `k` may
-# follow it (`curvature_pressure`). The **Euler spiral** (curvature linear in arc length) joins two points with given tangents; between equal ends it is an
-# exact circle. The package starts from it by default.
+# follow it (`curvature_pressure`). The **Euler spiral** (curvature linear in arc length) joins two points with given
+# tangents; between equal ends it is an exact circle. The package starts from it by default.
 
 
 # %%
