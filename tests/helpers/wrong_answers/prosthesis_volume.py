@@ -44,7 +44,7 @@ WRONG = {
         ("return region != bone", "rest of the skull"),
         ("return region & bone", "must go"),
         ("return bone & ~region", "Turned round"),
-        ("return region and not bone", "joined by &"),
+        ("return region and not bone", "join masks by &"),
         ("return region - bone", "Masks cannot be subtracted"),
         ("return ~(region & bone)", "This is nearly the whole picture"),
         ("return ~bone", "This is everything that is not bone"),
