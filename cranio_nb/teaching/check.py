@@ -35,6 +35,14 @@ _STOPPED: dict[type[BaseException], str] = {
     RecursionError: "The function calls itself without end: when should it stop?",
     MemoryError: "The function wants more memory than there is: what grows without end?",
 }
+_POWER = "A power is written `**`: `^` is either one without the other."
+_CAUSES = {
+    "boolean subtract": "Masks cannot be subtracted: join them by & and ~.",  # numpy advises ^, another wrong answer
+    "for ^": _POWER,
+    "'bitwise_xor' not supported": _POWER,
+    "truth value of an array": "`and`, `or`, `not` and `if` want one value, not an array: join masks by &, | and ~.",
+}
+"""Words of an error, and what is said instead of them."""
 
 
 class _NoAnswerError(Exception):
@@ -121,8 +129,7 @@ def _answer(answer: Callable[..., Any], given: tuple[Any, ...]) -> Any:
     except (Exception, SystemExit) as error:
         if type(error) is NotImplementedError:  # and none of its kinds, which say something else
             raise _NoAnswerError(STUB) from None
-        words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
-        raise _NoAnswerError(_STOPPED.get(type(error), words)) from None
+        raise _NoAnswerError(_why_stopped(error)) from None
 
 
 def _called(cases: list[tuple[Any, ...]], number: int) -> str:
@@ -162,6 +169,15 @@ def _same(given: Any, case: Any) -> bool:
     if isinstance(case, np.ndarray):
         return given.shape == case.shape and np.array_equal(given, case)
     return bool(given == case)
+
+
+def _why_stopped(error: BaseException) -> str:
+    """What a function stopped with, in words that lead on."""
+    for found, cause in _CAUSES.items():
+        if found in str(error):
+            return cause
+    words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
+    return _STOPPED.get(type(error), words)
 
 
 def _about_shapes(error: BaseException) -> str:
