@@ -110,7 +110,7 @@ def skullfix(folder: Path) -> None:
     print("\n== SkullFix cases (real skulls, true implants), no hints given")
     for label, options in (
         ("default, 6 directions", {}),
-        ("best single direction", {"directions": 1}),
+        ("one direction", {"directions": 1}),
         ("axial, as the paper", {"preset": "paper"}),
     ):
         rows = [skullfix_case(case, options) for case in sorted((folder / "skullfix/cases").iterdir())]

@@ -143,7 +143,7 @@ def _typed(words: Mapping[str, Any], name: str, kind: type, default: Any) -> Any
     found = words.get(name, default)
     if type(found) is not kind:
         called = {list: "list", dict: "object", int: "whole number", str: "text", bool: "truth value"}[kind]
-        raise bad_plan(f"{name} is no {called}", f"give {name} as a {called}")
+        raise bad_plan(f"{name} is no {called}", "give one")
     return found
 
 

@@ -35,17 +35,16 @@ _STOPPED: dict[type[BaseException], str] = {
     RecursionError: "The function calls itself without end: when should it stop?",
     MemoryError: "The function wants more memory than there is: what grows without end?",
 }
-_MEANT = (
-    (
-        r"truth value of an array",
-        "`and`, `or`, `not` and `if` ask for one truth value: for arrays there are `&`, `|` and `~`.",
-    ),
-    (
-        r"size (\d+) is different from (\d+)",
-        r"`@` met \2 columns at its left and \1 rows at its right: as many are wanted.",
-    ),
-    (r"'tuple'|tuple indices", "this is a tuple of several values: take them apart, as in `labels, n = ...`."),
-)
+_POWER = "A power is written `**`: `^` is either one without the other."
+_CAUSES = {
+    "boolean subtract": "Masks cannot be subtracted: join them by & and ~.",  # numpy advises ^, another wrong answer
+    r"for \^": _POWER,
+    "'bitwise_xor' not supported": _POWER,
+    "truth value of an array": "`and`, `or`, `not` and `if` want one value, not an array: join masks by &, | and ~.",
+    r"size (\d+) is different from (\d+)": r"`@` met \2 columns left and \1 rows right of it: as many are wanted.",
+    "'tuple'|tuple indices": "A tuple holds several values: take them apart, as in `labels, n = ...`.",
+}
+"""Words of an error, as a pattern, and what is said instead of them."""
 
 
 class _NoAnswerError(Exception):
@@ -132,8 +131,7 @@ def _answer(answer: Callable[..., Any], given: tuple[Any, ...]) -> Any:
     except (Exception, SystemExit) as error:
         if type(error) is NotImplementedError:  # and none of its kinds, which say something else
             raise _NoAnswerError(STUB) from None
-        words = f"The function stopped with {type(error).__name__}: {_meant(error)}"
-        raise _NoAnswerError(_STOPPED.get(type(error), words)) from None
+        raise _NoAnswerError(_why_stopped(error)) from None
 
 
 def _called(cases: list[tuple[Any, ...]], number: int) -> str:
@@ -175,12 +173,13 @@ def _same(given: Any, case: Any) -> bool:
     return bool(given == case)
 
 
-def _meant(error: BaseException) -> str:
-    """What an error that students often meet means; else its own words."""
-    for pattern, words in _MEANT:
+def _why_stopped(error: BaseException) -> str:
+    """What a function stopped with, in words that lead on."""
+    for pattern, cause in _CAUSES.items():
         if found := re.search(pattern, str(error)):
-            return found.expand(words)
-    return _first_line(error) + _about_shapes(error)
+            return found.expand(cause)
+    words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
+    return _STOPPED.get(type(error), words)
 
 
 def _about_shapes(error: BaseException) -> str:

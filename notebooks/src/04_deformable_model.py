@@ -91,7 +91,8 @@ diagrams.chord_frame(drawn, expected_deg=expect)
 # %% [markdown]
 # This is our slice in its chord frame: the letters tell how it is turned. Both angles count from the direction of
 # `along`, so theta1 goes over the top to the arrow at the far end. "Expect" is the angle that belongs to the true bone
-# (lesson 03, section 4); the broad pale line is the outer edge of that bone.
+# (lesson 03, section 4); the broad pale line is the outer edge of that bone. It is shorter than the chord, whose ends
+# lie behind the cut (`skip_px`).
 #
 # ## 2. The forces
 #
@@ -144,10 +145,10 @@ diagrams.snaxel_forces(90.0, theta, np.pi - theta, pressure=0.062)
 # and a rising one is no fault; $\lVert dc\rVert$ is what counts.
 #
 # **Predict, then move, then explain.** The panel begins at the start curve (step 0): press play, or put `step` to its
-# end. (a) Choose the preset *paper*: is the rest higher or lower than the dashed start? (b) Double N at the same `k`
-# (21 -> 41 snaxels): twice as high, four times, or the same? Set `dt` to 4, for the picture stops after 300 steps. (c)
-# Turn `k` negative. (d) Does the energy fall in all of these, and with k = 0.4? (No sliders? Use
-# `panel.set(n=41, dt=4, step=300)` and the like in a new cell.)
+# end. (a) Choose the preset *paper*: does the curve come to rest above or below the dashed start? (b) Double N at the
+# same `k` (21 -> 41 snaxels, under *more settings*): twice as high, four times, or the same? Set `dt` to 4, for the
+# picture stops after 300 steps. (c) Turn `k` negative. (d) Does the energy fall in all of these, and with k = 0.4? (No
+# sliders? Use `panel.set(n=41, dt=4, step=300)` and the like in a new cell; `k` is called `pressure`.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.balloon(outer, inside, background=bone.voxels[plane], truth=truth, px=case.px)
@@ -161,9 +162,9 @@ panel
 # Toward four times (3.1 -> 12.4 px): see the next section. Here it is about three (3.8 -> 11.6 px), because the ends
 # are clamped: their slope holds the flat curve up and the high one down. With dt = 1 it is not at rest after 300 steps.
 # (c) The curve sinks into the head. The paper prints k = -0.062 and does not say which way its normal points; with the
-# normal outward, a bulge needs k > 0, and this package counts so. (d) It falls in (a). With k = -0.062 it falls and
-# then turns, and with k = 0.4 it rises from the first step to the last, from 165.5 to 195.5 px2: a strong wind
-# stretches and bends the curve.
+# normal outward, a bulge needs k > 0, and this package counts so. (d) It falls in (a) and rises in (b), from 82.7 to
+# 88.0 px2. With k = -0.062 it falls and then turns, and with k = 0.4 it rises from the first step to the last, from
+# 165.5 to 195.5 px2: a strong wind stretches and bends the curve.
 #
 # </details>
 #
@@ -232,7 +233,7 @@ for size in (case.px, 0.45):
 #
 # And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of 0.45 mm, the paper's) and cut
 # gaps into them. The last of them is as wide as ours, 160 px, and the circle somewhat rounder than our bone: there the
-# parabola is about a sixth of the true height and the balloon at rest a third, not a half and 3.8 of 6.1 px as above.
+# parabola is about a sixth of the true height, not a half as above, and the balloon at rest a third.
 
 # %% tags=["nbval-check-output"]
 RADIUS, N_SNAXELS = 189.0, 21
@@ -283,8 +284,8 @@ for chord, made in zip(chords, paper, strict=True):
 # %% [markdown]
 # The true height grows with the square of the gap, more than sevenfold. The balloon's only doubles. Where do its few px
 # come from, if the parabola is 3.1 px high in every gap? From the clamp. Let $m = L\tan\theta/N$ be the slope that an
-# end is held to. The parabola starts with the slope $kN/2$ instead. Next to each end the fourth difference makes good
-# for the difference: there the rest is the parabola plus $a\,(1 - r^i)$. Two conditions fix $r$ and $a$. At rest
+# end is held to. The parabola starts with the slope $kN/2$ instead. Next to each end the fourth difference makes up
+# for this: there the curve at rest is the parabola plus $a\,(1 - r^i)$. Two conditions fix $r$ and $a$. At rest
 # tension and rigidity of the added part balance: its second difference equals its fourth. A second difference turns
 # $r^i$ into $(r - 2 + r^{-1})\,r^i$, a fourth does so twice; so this factor equals its own square, and is 1. And the
 # clamp holds the slope across the end, $(c_1 - c_{-1})/2 = m$, with a snaxel $c_{-1}$ thought beyond it:
@@ -323,9 +324,9 @@ print(f"balloon times {measured[-1] / measured[0]:.1f}")
 # $$k = \frac{L\,(\tan\theta_0 - \tan\theta_1)}{N^2}$$
 #
 # This is `tangent_pressure`. There is a second reading: a curve with snaxels $h$ apart and radius $R$ turns by $h/R$ at
-# each, so $k = h^2/R$. If the curvature is known all along the curve, `k` may follow it (`curvature_pressure`). The
-# **Euler spiral** (curvature linear in arc length) joins two points with given tangents; between equal ends it is an
-# exact circle. The package starts from it by default.
+# each, and its second difference is $h$ times that: $k = h^2/R$. If the curvature is known all along the curve, `k` may
+# follow it (`curvature_pressure`). The **Euler spiral** (curvature linear in arc length) joins two points with given
+# tangents; between equal ends it is an exact circle. The package starts from it by default.
 
 
 # %%
@@ -366,6 +367,7 @@ fig, (left, right) = pictures.axes(2)
 pictures.plot_lines(left, chords, errors, xlabel="gap L (px)", ylabel="largest error (px)")
 heights = {name: balloons[2].curve[:, 1] for name, balloons in ways.items()}
 pictures.plot_lines(right, range(21), heights, xlabel="snaxel", ylabel="height (px)")
+left.set(xticks=chords)
 right.set(title="at rest, gap of 120 px", xticks=range(0, 21, 5))
 alt = "Left: the paper's error grows steeply, the others stay small. Right: three arches."
 pictures.picture(
@@ -374,9 +376,9 @@ pictures.picture(
 
 # %% [markdown]
 # **Is a balloon needed at all?** Look at the last row printed: with exact tangents the start curve is nearly as good as
-# the balloon, and the spiral *starts* at rest (it is what the package does by default). But lesson 03 found tangents
-# that are some degrees off. Let us turn them by 5 degrees in each way there is, and then by chance: 300 times both
-# ends, each by itself, by 4 degrees (standard deviation).
+# the balloon, and the start spiral is the circle itself. But lesson 03 found tangents that are some degrees off. Let us
+# turn them by 5 degrees in each way there is, and then by chance: 300 times both ends, each by itself, by 4 degrees
+# (standard deviation).
 #
 # **Predict:** in which of these does the balloon help most, and in which not at all?
 
@@ -408,11 +410,11 @@ print(f"spiral {by_start.min():.1f} to {by_start.max():.1f}")
 
 # %% tags=["nbval-check-output"]
 by_chance = np.random.default_rng(0).normal(0, 4, (300, 2))
-drawn = np.array([errors_of_three(120, turns) for turns in by_chance])
+by_draw = np.array([errors_of_three(120, turns) for turns in by_chance])
 print("by chance, 4 degrees, 300 draws")
-for name, values in (("mean", drawn.mean(axis=0)), ("spread (SD)", drawn.std(axis=0))):
+for name, values in (("mean", by_draw.mean(axis=0)), ("spread (SD)", by_draw.std(axis=0))):
     print(f"{name:38}" + "".join(f"{e:8.2f}" for e in values))
-better = drawn[:, [1]] < drawn[:, [0, 2]]
+better = by_draw[:, [1]] < by_draw[:, [0, 2]]
 print(
     "balloon nearer than cubic, than spiral: {:.0%}, {:.0%} of the draws".format(
         *better.mean(0)
@@ -421,9 +423,9 @@ print(
 
 # %% tags=["nbval-check-output"]
 fig, (ax,) = pictures.axes(height=3.2)
-share = np.linspace(0, 100, len(drawn))
+share = np.linspace(0, 100, len(by_draw))
 ranked = dict(
-    zip(("start cubic", "balloon", "start spiral"), np.sort(drawn, axis=0).T, strict=True)
+    zip(("start cubic", "balloon", "start spiral"), np.sort(by_draw, axis=0).T, strict=True)
 )
 pictures.plot_lines(
     ax, share, ranked, xlabel="draws, least error first (%)", ylabel="largest error (px)"
@@ -442,7 +444,7 @@ pictures.picture(fig, alt, f"median error (px): {medians}")
 # - **By chance** it gains a little: 1.32 px on average against 1.62 for the cubic and 1.49 for the spiral, with a
 #   spread of about one px each. It is not the better one in every draw.
 #
-# So the balloon smooths away a part of the noise, and none of a bias that both ends share; and the ends of lesson 03
+# So the balloon smooths away a part of the noise, and none of a bias toward steep or flat ends; and those of lesson 03
 # *are* too steep on both sides. It is worth its steps where the noise is large, where other weights are wanted, or
 # where an image pulls at the curve. Better tangents are worth more.
 #
@@ -451,9 +453,9 @@ pictures.picture(fig, alt, f"median error (px): {medians}")
 # <details>
 # <summary>Answer</summary>
 #
-# Snaxels of the cubic are evenly spaced along the *chord*, and the rest is nearly a parabola. A circle is a parabola
-# only as long as it is flat. Steep ends (25 degrees in the gap of 160 px, section 3) make the difference plain; the
-# spiral works with arc length and has none of this.
+# Snaxels of the cubic are evenly spaced along the *chord*, and the curve at rest is nearly a parabola. A circle is a
+# parabola only as long as it is flat. Steep ends (25 degrees in the gap of 160 px, section 3) make the difference
+# plain; the spiral works with arc length and has none of this.
 #
 # </details>
 #
@@ -508,7 +510,8 @@ print(
 # - 135 and 147 are the *largest* numbers of steps in the paper's Tables 1 and 2; its text calls them the mean.
 # - The sign of `k` depends on a normal whose direction is not given.
 # - `dt` is missing.
-# - Eq. (2) writes C'(L) = tan theta1 for the slope, where theta1 is measured as in Fig. 4.
+# - Eq. (2) goes from 0 to L along the chord, where the slope is tan theta; eqs. (1) and (3) go from 0 to 1, where it is
+#   L tan theta.
 #
 # </details>
 #
@@ -588,8 +591,8 @@ if truth is not None:
 # %% [markdown]
 # The tangent pressure overshoots: 6.4 mm high against 5.5 mm in this slice, 0.5 mm too high on average of the eleven
 # slices, 0.4 mm too low in one and 1.2 mm too high in another. The pressure is right for the tangents it is given; the
-# *tangents* are too steep on average (bias) and jump from slice to slice (noise): lesson 03 has both. A bias that both
-# ends share does not cancel: a good balloon cannot mend biased ends. What the paper says of its Figure 7,
+# *tangents* are too steep on average (bias) and jump from slice to slice (noise): lesson 03 has both. Where both
+# ends are too steep nothing cancels: a good balloon cannot mend biased ends. What the paper says of its Figure 7,
 # "we did not get the suitable boundary conditions", is an error of the same kind.
 
 # %% [markdown]
@@ -658,7 +661,8 @@ pictures.picture(fig, alt, ", ".join(f"{name}: {y.max():.1f} px" for name, y in 
 #
 # - With w1 = ds^2 and w2 = ds^4 the balloon lives in index space: apex = k N^2 / 8 px, whatever the gap, plus what the
 #   clamped slopes lift it by within about one snaxel of each end.
-# - The balloon lessens the error that turns both tangents the same way, and keeps the error that both ends share.
+# - The balloon lessens the error of tangents that are turned the same way, and keeps that of ends which are both too
+#   steep or both too flat.
 # - A fixed `k` fits one width. `k = L (tan theta0 - tan theta1) / N^2` fits all, and the spiral fits steep ones too.
 # - Steps grow with N^2 / dt. A small step is no proof of arrival.
 #

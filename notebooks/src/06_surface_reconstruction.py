@@ -35,8 +35,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 #
 # | name | meaning | unit | paper |
 # |---|---|---|---|
-# | `smooth` | place vertices between the voxels | | no |
-# | `n_steps` | steps of smoothing | 1 | no |
+# | `smooth` | place vertices between the voxels; yes if not given | yes or no | no |
+# | `n_steps` | steps of smoothing; 24 if not given | 1 | no |
 #
 # *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
 # scan of your own.
@@ -144,13 +144,14 @@ for steps in (10, 24):
 # <summary>Answer</summary>
 #
 # About ten steps bring most of it: they take off 83 % of the area that two hundred take off, and the default 24 take off
-# 94 %. After that the vertices still creep (0.51 to 0.61 mm on average), and the area hardly falls. (0 steps already put each vertex where the
-# distance to the patch's edge, signed and smoothed, is zero; the panel's 0 is marching cubes itself.) You cannot leave
-# the bound: each vertex is clipped to its box of half a voxel in every step.
+# 94 %. After that the vertices still creep (0.51 to 0.61 mm on average), and the area hardly falls. (0 steps already
+# put each vertex where the distance to the patch's edge, signed and smoothed, is zero; the panel's 0 is marching cubes
+# itself.) You cannot leave the bound: each vertex is clipped to its box of half a voxel in every step.
 #
-# What would go further stops at a wall of the box. Most walls that matter here are half a plane away: hence the pile
-# near 1.25 mm, and a little beyond it, as along the wall a vertex may still move. Only a vertex that is
-# stopped along all three axes sits in a corner of the box, at 1.40 mm.
+# What would go further stops at a wall of the box. Those that a wall half a plane away stops make the pile near
+# 1.25 mm, and a little beyond it, as along the wall a vertex may still move. Those that a wall half a pixel away stops
+# are no fewer, but the bars do not show them: many others have moved as far. Only a vertex that is stopped along all
+# three axes sits in a corner of the box, at 1.40 mm.
 #
 # </details>
 #
@@ -198,8 +199,8 @@ assert size == 84 + 50 * len(made.mesh.faces)
 print(f"prosthesis.stl: {size} bytes = 84 + 50 x {len(made.mesh.faces)} faces")
 
 # %% [markdown]
-# An STL file is a header of 84 bytes and then 50 bytes for each face: its normal and its corners, as plain numbers.
-# So it knows no unit. Everybody assumes mm; 3MF, a younger format, says so.
+# An STL file is a header of 84 bytes and then 50 bytes for each face: its normal and its corners, as plain numbers of 4
+# bytes, and 2 bytes to spare. So it knows no unit. Everybody assumes mm; 3MF, a younger format, says so.
 #
 # ## A mistake to make once
 #

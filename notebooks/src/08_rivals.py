@@ -253,7 +253,7 @@ print(f"here in mm: max {in_mm.max():.2f}; a voxel is {size}")
 
 # %% [markdown]
 # Nearly the same ratio, a half. So the paper's largest distance of 6.06 voxels may well be the height of the cap that
-# was missing, and the mean is what geometry makes of it. (Its 4.82 voxels here are 5.10 mm: the way to the true surface
+# was missing, and the mean is what geometry makes of it. (4.82 voxels here are 5.10 mm: the way to the true surface
 # leads a little upwards, too, and a voxel is 0.9 mm wide but 2.5 mm high. The panel above measures the film itself,
 # before it is made of voxels: 5.14 mm at most. That its mean of 2.54 mm equals the table's 2.54 voxels is chance.)
 #

@@ -88,6 +88,8 @@ theta0, theta1 = np.mean([[s["theta0"][0], s["theta1"][0]] for s in balloons], a
 print(f"on average outer theta0 {theta0:.0f}, 180 - theta1 {180 - theta1:.0f} degrees")
 rounder = sum(180 - s["theta1"][0] > s["theta0"][0] for s in balloons)
 print(f"the second end is the steeper one in {rounder} of {len(balloons)} slices")
+ends = [one.ends[0].points for one in paper.working[0].slices if one.status == "balloon"]
+print(f"and lies further back in {sum(second[0] > one[0] for one, second in ends)}")
 for i, (side, rows) in enumerate(paper_tables.PAPER_BALLOONS.items()):
     above = sum(s["n_iter"][i] > rows["n_iter"][1] for s in balloons)
     print(f"{side}: {above} of {len(balloons)} slices take more steps than the paper's largest")
@@ -139,9 +141,9 @@ for name, values in zip(names, wide.T, strict=True):
 # the side of this head is flatter. Gap and radius are two unknowns, and no single angle gives both. Of the authors'
 # opening we may say that it was a wide one, and not much more.
 #
-# The second end is the steeper one in 20 of 22 slices: this skull is rounder towards the back. One exception is the
-# last bridged slice, whose outer theta1 is more than 180 degrees: there the curve has to arrive from *inside* the head.
-# The cutter had slanted the bone, and the line was fitted to the slant (lesson 05, section 3).
+# The second end, the one further back, is the steeper one in 20 of 22 slices: this skull is rounder towards the back.
+# One exception is the last bridged slice, whose outer theta1 is more than 180 degrees: there the curve has to arrive
+# from *inside* the head. The cutter had slanted the bone, and the line was fitted to the slant (lesson 05, section 3).
 #
 # The number of steps depends on `dt`, which the paper does not give. With dt = 1 most of our slices take more steps
 # than the paper's largest; whether their time step was larger or their stop earlier, we cannot tell. Angles of the same

@@ -110,7 +110,7 @@ def pieces(
         As the paper: the planes of the scan, features by skeleton and convex hull.
         Otherwise fans of planes from inside the head, features along rays.
     directions : int
-        In how many directions the fans cross the hole; 1 is the best single one, across its short side.
+        In how many directions the fans cross the hole; 1 is the one across its short side.
     skip_mm, reach_mm : float
         Boundary left out next to the gap, and fitted after that, mm of arc length.
     pressure_mm : float, optional

@@ -88,6 +88,7 @@ EXERCISES: dict[str, Exercise] = {
             (lambda k, n: k * (n + 1) ** 2 / 8, "N counts the steps between snaxels: N = n - 1."),
             (lambda k, n: k * (n - 1) / 8, "N is squared: twice as many steps, four times the height."),
             (lambda k, n: k * n / 8, "N is squared, and counts the steps: N = n - 1."),
+            (lambda k, n: k * n * (n - 1) / 8, "N counts the steps between snaxels: N = n - 1, both times."),
             (lambda k, n: k * (n - 1) * (n - 2) / 8, "The parabola is i (N - i): at its middle both are N / 2."),
             (lambda k, n: (n - 1) ** 2 / 8, "The pressure is missing: twice the wind, twice the height."),
             (lambda k, n: k * (n - 1) ** 2 / 8 * _PX, "This is in mm of the paper's pixel: px are wanted."),
@@ -109,14 +110,16 @@ EXERCISES: dict[str, Exercise] = {
         right=_tangent_pressure,
         answer=Answer("one number", unit="px per index squared", tolerance=1e-6),
         mistakes=(
-            (lambda L, a, b, n: L * (np.tan(a) - np.tan(b)) / n**2, "N counts the steps between snaxels: N = n - 1."),
             (
                 lambda L, a, b, n: L * (np.tan(a) + np.tan(b)) / (n - 1) ** 2,
                 "tan theta1 is negative: adding it takes away what it should give.",
             ),
-            (
-                lambda L, a, b, n: L * (np.tan(np.radians(a)) - np.tan(np.radians(b))) / (n - 1) ** 2,
-                "The angles are in radians already.",
+            *(
+                (
+                    lambda L, a, b, n, turn=turn: L * (np.tan(turn(a)) - np.tan(turn(b))) / (n - 1) ** 2,
+                    "The angles are in radians already, and np.tan takes them so.",
+                )
+                for turn in (np.radians, np.degrees)
             ),
             (
                 lambda L, a, b, n: (np.tan(a) - np.tan(b)) / (n - 1) ** 2,
@@ -159,17 +162,13 @@ EXERCISES: dict[str, Exercise] = {
                     lambda L, a, b, n, at=at: L * (np.tan(a) - np.tan(b)) / (n + at) ** 2,
                     "N counts the steps between snaxels: N = n - 1.",
                 )
-                for at in (1, -2)
+                for at in (0, 1, -2)
             ),
             (lambda L, a, b, n: L * (np.sin(a) + np.sin(b)) / (n - 1) ** 2, "A slope is a tangent, not a sine."),
             (lambda L, a, b, n: L * (np.cos(a) - np.cos(b)) / (n - 1) ** 2, "A slope is a tangent, not a cosine."),
             (
                 lambda L, a, b, n: L * abs(np.tan(a) + np.tan(b)) / (n - 1) ** 2,
                 "tan theta1 is negative: adding it takes away what it should give.",
-            ),
-            (
-                lambda L, a, b, n: L * (np.tan(np.degrees(a)) - np.tan(np.degrees(b))) / (n - 1) ** 2,
-                "The angles are in radians already, and np.tan takes them so.",
             ),
             *(
                 (
@@ -225,6 +224,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda L, a, b, n: _relaxed(L, a, b, n, -_tangent_pressure(L, a, b, n)),
                 "The balloon goes into the head: k must be positive here.",
             ),
+            (
+                lambda L, a, b, n: _relaxed(L, a, b, n, 2 * L * np.tan(a) / (n - 1) ** 2),
+                "In k the first end is taken for both: the gap need not be symmetric.",
+            ),
             (_mirrored, "The whole curve lies on the wrong side of the chord."),
             (lambda L, a, b, n: _relaxed(L, a, b, n, 0.0), "Without pressure tension pulls the curve flat."),
             (
@@ -260,21 +263,15 @@ EXERCISES: dict[str, Exercise] = {
                 "The end slopes are far too small: one step along is L / N px.",
             ),
             (
-                lambda L, a, b, n: _with_slopes(
-                    L, a, b, n, np.array([[L, L * np.tan(b)], [L, L * np.tan(a)]]) / (n - 1)
-                ),
+                lambda L, a, b, n: _with_slopes(L, a, b, n, L * np.array([[1, np.tan(t)] for t in (b, a)]) / (n - 1)),
                 "The end slopes are exchanged: theta0 belongs to the first end.",
             ),
             (
-                lambda L, a, b, n: _with_slopes(
-                    L, a, b, n, np.array([[L, L * np.tan(a)], [L, -L * np.tan(b)]]) / (n - 1)
-                ),
+                lambda L, a, b, n: _with_slopes(L, a, b, n, L * np.array([[1, np.tan(t)] for t in (a, -b)]) / (n - 1)),
                 "The slope at the second end has the wrong sign: theta1 is obtuse, its tangent is negative already.",
             ),
             (
-                lambda L, a, b, n: _with_slopes(
-                    L, a, b, n, np.array([[L * np.tan(a), L], [L * np.tan(b), L]]) / (n - 1)
-                ),
+                lambda L, a, b, n: _with_slopes(L, a, b, n, L * np.array([[np.tan(t), 1] for t in (a, b)]) / (n - 1)),
                 "Along and out are exchanged in the end slopes: (along, out).",
             ),
             (
@@ -317,6 +314,10 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda L, a, b, n: _relaxed(L, a, b, n, L * (np.tan(a) - np.tan(b)) / (n - 2) ** 2),
                 "Blown too hard: tangent_pressure wants n, the number of snaxels, and takes n - 1 itself.",
+            ),
+            (
+                lambda L, a, b, n: _with_slopes(L, a, b, n, 2 * [[L * np.tan(t) / (n - 1) for t in (a, b)]]),
+                "Each slope has two parts, along and out: the end slopes are an array (2, 2).",
             ),
             (lambda L, a, b, n: _at_rest(L, a, b, n)[:, ::-1], "Along and out are exchanged: columns (along, out)."),
             (lambda L, a, b, n: _at_rest(L, a, b, n)[:, 1], "These are the heights alone: return (along, out)."),

@@ -53,8 +53,8 @@ def _dented():
     return [(speck, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]
 
 
-def _lost(bone, min_pixels, touching=_CORNERS):
-    labels, n = ndimage.label(convex_hull_image(bone) & ~bone, touching)
+def _lost(bone, min_pixels, touching=_CORNERS, whole=convex_hull_image):
+    labels, n = ndimage.label(whole(bone) & ~bone, touching)
     sizes = np.bincount(labels.ravel(), minlength=n + 1)
     sizes[0] = 0
     keep = sizes >= min_pixels
@@ -274,9 +274,12 @@ EXERCISES: dict[str, Exercise] = {
                 lambda b, m: convex_hull_image(b) & ~b,
                 "This is the whole difference: the biggest region and the islands must go.",
             ),
-            (
-                lambda b, m: ndimage.binary_fill_holes(b) & ~b,
-                "Filling holes finds the cavity, not the dent: use the convex hull.",
+            *(
+                (way, "Filling holes finds the cavity, not the dent: use the convex hull.")
+                for way in (
+                    lambda b, m: ndimage.binary_fill_holes(b) & ~b,
+                    lambda b, m: _lost(b, m, whole=ndimage.binary_fill_holes),
+                )
             ),
             (
                 lambda b, m: _only(b, -2),

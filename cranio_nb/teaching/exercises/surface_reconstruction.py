@@ -32,7 +32,7 @@ def _normals(vertices, faces):
 
 
 def _voxel_places():
-    index = np.array([[0.0, 0.0, 0.0], [10.0, 4.0, 2.0], [3.5, 90.0, 41.5]])
+    index = np.array([[0.5, 1.0, 2.0], [10.0, 4.0, 3.0], [3.5, 90.0, 41.5]])
     return [(index, np.array(s)) for s in ((3.0, 1.75, 1.75), (2.5, 0.45, 0.45), (1.0, 2.0, 4.0))]
 
 
@@ -78,6 +78,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda v, f: (v[f[:, 0]] @ np.cross(v[f[:, 1]], v[f[:, 2]]).T).sum() / 6,
                 "`@` takes every face with every other: multiply row by row, (a * ...).sum().",
             ),
+            (
+                lambda v, f: (v[f[0]] * np.cross(v[f[1]], v[f[2]])).sum() / 6,
+                "faces[0] is the first face; the first corners of all faces are faces[:, 0].",
+            ),
         ),
         hints=(
             "Each face and the origin make a tetrahedron.",
@@ -105,6 +109,7 @@ EXERCISES: dict[str, Exercise] = {
                 "The spacings go along the rows of the array here; one belongs to each column.",
             ),
             (lambda i, s: i * s[0], "The first spacing is used for all axes: each axis has its own."),
+            (lambda i, s: (i - i.min(axis=0)) * s, "These count from the first position: index 0 lies at 0 mm."),
             (lambda i, s: (i + 1) * s, "A voxel off: index 0 lies at 0 mm."),
             (lambda i, s: (i - 1) * s, "A voxel off: index 0 lies at 0 mm."),
             (

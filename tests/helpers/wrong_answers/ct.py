@@ -66,7 +66,7 @@ WRONG = {
         ("return affine[:3,:3] @ index - affine[:3,3]", "The origin is added"),
         ("return affine[:3,:3] @ (index + 0.5) + affine[:3,3]", "Half a voxel off"),
         ("return index + affine[:3,3]", "These are still voxels"),
-        ("return affine @ index", "4 columns at its left and 3 rows"),
+        ("return affine @ index", "4 columns left and 3 rows"),
         ("return (affine[:3,:3] @ index + affine[:3,3]).round()", "rounded"),
         ("return affine[:3,:3] @ index * affine[:3,3]", "not multiplied"),
         ("return np.diag(affine)[:3] * index + affine[:3,3]", "Spacings alone"),

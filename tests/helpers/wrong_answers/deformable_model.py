@@ -15,6 +15,8 @@ UNIT = "np.array([[np.cos(t), np.sin(t)] for t in (theta0, theta1)])"
 WRONG = {
     "4.1": [
         ("return k * n ** 2 / 8", "N = n - 1"),
+        ("return k * n * (n - 1) / 8", "both times"),
+        ("return k * (n - 1) ^ 2 / 8", "A power is written"),
         ("return k * (n - 1) ** 2 / 2", "Four times"),
         ("return k * (n - 1) ** 2", "factor"),
         ("return k * (n + 1)**2 / 8", "N counts the steps between snaxels"),
@@ -75,6 +77,7 @@ WRONG = {
         (f"k = deformable_model.PAPER_PRESSURE; {END}", "paper's k"),
         (f"k = -deformable_model.tangent_pressure(length, theta0, theta1, n); {END}", "into the head"),
         (f"k = 0; {END}", "flat"),
+        (f"k = 2 * length * np.tan(theta0) / (n - 1) ** 2; {END}", "first end is taken for both"),
         ("return np.linspace([0, 0], [length, 0], n)", "chord"),
         ("return cubic(length, theta0, theta1, n)", "start curve"),
         ("return spiral(length, theta0, theta1, n)[0]", "spiral"),
@@ -84,6 +87,7 @@ WRONG = {
         (f"slopes = np.array([[1, np.tan(t)] for t in (theta0, theta1)]); {REST}", "slopes are too small"),
         (f"slopes = np.array([[1, np.tan(t)] for t in (theta0, theta1)]) / (n - 1); {REST}", "far too small"),
         (f"slopes = np.zeros((2, 2)); {REST}", "far too small"),
+        (f"slopes = length * np.tan([theta0, theta1]) / (n - 1); {REST}", "two parts"),
         (f"{SLOPES}[::-1] / (n - 1); {REST}", "exchanged: theta0"),
         (f"{SLOPES} * [[1, 1], [1, -1]] / (n - 1); {REST}", "wrong sign"),
         (f"{SLOPES}[:, ::-1] / (n - 1); {REST}", "Along and out"),

@@ -44,7 +44,8 @@ WRONG = {
         ("return region != bone", "rest of the skull"),
         ("return region & bone", "must go"),
         ("return bone & ~region", "Turned round"),
-        ("return region - bone", "stopped with TypeError"),
+        ("return region and not bone", "join masks by &"),
+        ("return region - bone", "Masks cannot be subtracted"),
         ("return ~(region & bone)", "This is nearly the whole picture"),
         ("return ~bone", "This is everything that is not bone"),
         ("return region.astype(int) - bone.astype(int)", "Numbers with -1 among them"),
@@ -73,6 +74,11 @@ WRONG = {
         ),
         ("return convex_hull_image(bone) & ~bone", "whole difference"),
         ("return ndimage.binary_fill_holes(bone) & ~bone", "convex hull"),
+        (
+            f"{REGIONS_8.replace('convex_hull_image', 'ndimage.binary_fill_holes')}; "
+            "k = s >= min_pixels; k[s.argmax()] = False; return k[l]",
+            "convex hull",
+        ),
         (
             "l, n = ndimage.label(convex_hull_image(bone) & ~bone); s = np.bincount(l.ravel()); s[0] = 0; "
             "return (s >= min_pixels)[l]",

@@ -22,6 +22,7 @@ WRONG = {
             "This is the area of the surface",
         ),
         ("return len(faces) / 6", "does not use `vertices`"),
+        ("a, b, c = (vertices[faces[i]] for i in range(3)); return (a * np.cross(b, c)).sum() / 6", "first face"),
         (
             ("a, b, c = vertices[:, 0], vertices[:, 1], vertices[:, 2]; return np.dot(a, np.cross(b, c)) / 6"),
             "stopped with ValueError",
@@ -71,6 +72,7 @@ WRONG = {
         ("return len(vertices)", "The function does not use `faces`"),
     ],
     "6.2": [
+        ("return (index - index.min(axis=0)) * spacing", "count from the first position"),
         ("return index", "still voxels"),
         ("return index * spacing[::-1]", "turn it round"),
         ("return index / spacing", "Divided"),

@@ -39,7 +39,7 @@ WRONG = {
         ("return 2 * (a & b).sum() / (a | b).sum()", "For bool masks a + b means a | b"),
         ("return (a & b).sum()", "This counts what is shared"),
         ("return round(2 * (a & b).sum() / (a.sum() + b.sum()), 2)", "The numbers were rounded"),
-        ("return 2 * (a and b).sum() / (a.sum() + b.sum())", "for arrays there are `&`"),
+        ("return 2 * (a and b).sum() / (a.sum() + b.sum())", "join masks by &"),
         ("return (a & b).sum() / max(a.sum(), b.sum())", "Dice takes their sum"),
         ("return (a & b).sum() / min(a.sum(), b.sum())", "Dice takes their sum"),
         ("return (a & b).sum() / np.sqrt(a.sum() * b.sum())", "Dice takes their sum"),
