@@ -19,7 +19,7 @@ from nbformat import NotebookNode
 
 from ..errors import InputRefused
 from ..output.staging import replace_file
-from .lesson_text import METADATA, cell_ids, read_lesson, tags
+from .lesson_text import METADATA, cell_ids, read_lesson, tags, without_pictures
 from .student_copy import exercise_copy
 
 QUIET = {"CRANIO_NB_MODE": "static", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TQDM_DISABLE": "1"}
@@ -174,5 +174,6 @@ def _comparable(notebook: NotebookNode) -> list[Any]:
             data = output.get("data", {})
             alts = {kind: output.metadata[kind].get("alt") for kind in data if kind in output.get("metadata", {})}
             written.append((output.output_type, output.get("text"), output.get("ename"), data.get("text/plain"), alts))
-        found.append((cell.id, cell.cell_type, cell.source, tags(cell), cell.get("execution_count"), written))
+        words = without_pictures(cell.source)
+        found.append((cell.id, cell.cell_type, words, tags(cell), cell.get("execution_count"), written))
     return found

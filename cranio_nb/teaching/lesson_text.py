@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ast
 import hashlib
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -24,6 +25,7 @@ METADATA = {
     "language_info": {"file_extension": ".py", "mimetype": "text/x-python", "name": "python"},
 }
 """Metadata of every notebook: no traces of the machine it was made on."""
+_PICTURE = re.compile(r"\(data:image/[^)]*\)")
 _SET_UP = """# On Colab this installs the package; elsewhere it does nothing. SOURCE is what pip can take:
 # the package's name, a wheel that you uploaded, or "git+" and the project's address.
 SOURCE = "cranio-nb"
@@ -106,7 +108,7 @@ def make_notebook(cells: Sequence[NotebookNode]) -> NotebookNode:
 
 
 def cell_ids(cells: Iterable[NotebookNode]) -> list[str]:
-    """Names of cells that follow from their texts.
+    """Names of cells that follow from their texts, not from the pictures in them: these differ between machines.
 
     Parameters
     ----------
@@ -120,9 +122,29 @@ def cell_ids(cells: Iterable[NotebookNode]) -> list[str]:
     seen: dict[str, int] = {}
     found = []
     for cell in cells:
-        n = seen[cell.source] = seen.get(cell.source, 0) + 1
-        found.append(hashlib.sha256(f"{n} {cell.cell_type} {cell.source}".encode()).hexdigest()[:12])
+        words = without_pictures(cell.source)
+        n = seen[words] = seen.get(words, 0) + 1
+        found.append(hashlib.sha256(f"{n} {cell.cell_type} {words}".encode()).hexdigest()[:12])
     return found
+
+
+def without_pictures(source: str) -> str:
+    """The text of a cell without the pictures that are written into it.
+
+    Parameters
+    ----------
+    source : str
+
+    Returns
+    -------
+    str
+
+    Examples
+    --------
+    >>> without_pictures("![a hole](data:image/png;base64,iVBORw0K) is what you should see")
+    '![a hole]() is what you should see'
+    """
+    return _PICTURE.sub("()", source)
 
 
 def _check_solutions(name: str, cells: list[NotebookNode]) -> None:
