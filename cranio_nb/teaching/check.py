@@ -40,6 +40,7 @@ _CAUSES = {
     "boolean subtract": "Masks cannot be subtracted: join them by & and ~.",  # numpy advises ^, another wrong answer
     "for ^": _POWER,
     "'bitwise_xor' not supported": _POWER,
+    "the concatenation axis": "The arrays to join differ in shape. (Of what query of a tree gives, [0] are distances.)",
     "truth value of an array": "`and`, `or`, `not` and `if` want one value, not an array: join masks by &, | and ~.",
 }
 """Words of an error, and what is said instead of them."""
@@ -181,11 +182,15 @@ def _why_stopped(error: BaseException) -> str:
 
 
 def _about_shapes(error: BaseException) -> str:
-    """What is said besides where one number for each row meets a table as if it were a row of it."""
+    """What is said besides where the shapes tell a likely cause: a column lost, a wrong axis, A A^T for A^T A."""
     shapes = sorted(re.findall(r"\((\d+),(\d*)\)", str(error)), key=lambda shape: shape[1] == "")
     match shapes if isinstance(error, ValueError) and "broadcast" in str(error) else ():
         case [(rows, columns), (n, "")] if columns and n == rows:
             return f" - {n} numbers for {n} rows: keep it a column, as [:, [i]], [:, None] or keepdims=True do."
+        case [(rows, columns), (n, "") | ("1", n)] if columns and n not in (rows, columns):
+            return f" - {n} numbers for {rows} rows: was the sum taken along the wrong axis?"
+        case [(rows, columns), (n, m)] if rows == columns and n == m:
+            return f" - {rows} rows and columns against {n}: is a product turned round, A @ A.T for A.T @ A?"
     return ""
 
 
