@@ -188,9 +188,9 @@ def _about_shapes(error: BaseException) -> str:
         case [(rows, columns), (n, "")] if columns and n == rows:
             return f" - {n} numbers for {n} rows: keep it a column, as [:, [i]], [:, None] or keepdims=True do."
         case [(rows, columns), (n, "") | ("1", n)] if columns and n not in (rows, columns):
-            return f" - {n} numbers for {rows} rows: was the sum taken along the wrong axis?"
+            return f" - {n} numbers for {rows} rows: summed along the wrong axis, or some left out?"
         case [(rows, columns), (n, m)] if rows == columns and n == m:
-            return f" - {rows} rows and columns against {n}: is a product turned round, A @ A.T for A.T @ A?"
+            return f" - {rows} against {n}: is a product turned round (A @ A.T for A.T @ A), or an edge cut off?"
     return ""
 
 
