@@ -89,10 +89,10 @@ for side, code in against_truth.SIDES.items():
 #
 # At the rim: all of the largest (more than 0.7 of the maximum) lie within 3.3 mm of bone, where one voxel more or less
 # of slanted bone decides. (The bright spot further in, more than 5 mm from bone, is 0.77 mm off, not half as far as the
-# worst node, the circle at the rim: the colours end at 0.7 mm.) One would expect the middle to be worst, for it is farthest from any bone, and one wrong tangent (lesson 05) does most harm there. But here
-# six directions are averaged, and the middle is one of the *best* places: 0.07 mm off, where the mean is 0.14 mm. The
-# inner side is a little worse on average here (0.18 against 0.14 mm); the single worst node lies on the outer side
-# (1.91 against 1.05 mm).
+# worst node, the circle at the rim: the colours end at 0.7 mm.) One would expect the middle to be worst, for it is
+# farthest from any bone, and one wrong tangent (lesson 05) does most harm there. But here six directions are averaged,
+# and the middle is one of the *best* places: 0.07 mm off, where the mean is 0.14 mm. The inner side is a little worse
+# on average here (0.18 against 0.14 mm); the single worst node lies on the outer side (1.91 against 1.05 mm).
 #
 # </details>
 #
@@ -156,8 +156,9 @@ print(f"a ball of {radius:.0f} mm radius, moved by one voxel: Dice {dice:.3f}")
 #
 # (a) For a thin shell Dice is harsh: a shift by one voxel (0.9 mm) across it leaves 0.830, while a ball of as much bone
 # would keep 0.958. Our design has 0.969. HD95 does not see the difference: both have 0.90 mm, one pixel. (b) HD95 sees
-# what is missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is as bad as the shift for
-# Dice (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints several.
+# what is missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is nearly as bad as the
+# shift for Dice (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints
+# several.
 #
 # </details>
 #
