@@ -102,7 +102,7 @@ _ = panel.set(**start)
 # <details>
 # <summary>Answer</summary>
 #
-# From 0.94 for the quick default, `k` and the tension cost much in both directions, the threshold where it is
+# From 0.94 for the quick default, `k` and the tension cost much in both directions, the threshold most where it is
 # doubled: at 800 HU thin bone is lost. (0.04 and 0.16 are half and twice of the `k` that 21 snaxels want.)
 # Half a reach costs more than twice of it, and a skip of 1 or 3 mm little. (The slider of the skip goes in steps of
 # half a mm.) The rigidity changes next to nothing: that one you would not have to tune.
@@ -211,7 +211,7 @@ print(f"correlation of both: {np.corrcoef(means, there)[0, 1]:.2f}")
 # and reach are what the tangents are made of (lesson 03): too short costs 0.090 and 0.070, too long only 0.027 and
 # 0.005. Too low a threshold costs 0.046. The distances say the same in mm.
 #
-# Heads differ by less than that here, from 0.936 to 0.942. Still, three are few: a change of less than three times its
+# Heads differ less than most of these here, from 0.936 to 0.942. Still, three are few: a change of less than three times its
 # error says nothing. That goes for a skip of 8 mm (2.2 times), for a threshold of 700 HU (2.7 times), for a reach of 25
 # mm and for `k` at 0.08. Whoever wants to know needs more heads (section 5), and better ones with real rims.
 #
@@ -403,8 +403,9 @@ for name in ("slicewise", "polynomial"):
     usually = rows["options"] == "{}"
     taken = summaries.where(rows, (rows["contender"] == name) & usually)
     found = summaries.summary(taken)
-    d, count = found["dice"], len(taken["key"])
-    print(f"{name:20} {count:5} {d.mean:8.3f} {d.sd:7.3f} {d.worst:8.3f} ", end="")
+    d, each = found["dice"], summaries.values(taken, "dice")
+    deviation = each.std(ddof=1)  # as in section 2; `d.sd` divides by all heads
+    print(f"{name:20} {len(each):5} {d.mean:8.3f} {deviation:7.3f} {d.worst:8.3f} ", end="")
     print(f"{found['hd95'].mean:8.2f}")
 
 # %% tags=["nbval-check-output"]
@@ -502,7 +503,7 @@ pictures.scene(
 # %% [markdown]
 # Three numbers for "how far off", and they differ much: 0.37 mm on average, 1.75 mm by HD95, 2.77 mm at most. The
 # largest belongs to one node in one of the two places at the rim that the colours show. HD95 is counted from voxel to
-# voxel, so it goes in steps of them, and most settings of section 1 share it. To tune by, take what moves smoothly, the
+# voxel, so it goes in steps of them, and both methods share it. To tune by, take what moves smoothly, the
 # mean or Dice; and look at the map before you believe any of them.
 #
 # ## A mistake to make once
