@@ -102,8 +102,7 @@ print(f"radius of the missing bone: {away.min():.0f} to {away.max():.0f} mm")
 
 # %% [markdown]
 # (In the white corner, far from the hole, no vault was found, and in the dark band beside it the rays meet the edge of
-# the bone. The fine rings, plainest in the map of the thickness, are
-# steps of one voxel.)
+# the bone. The fine rings, plainest in the map of the thickness, are steps of one voxel.)
 #
 # A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
 # no better than flat starts from a sphere. (The flat fill of lesson 08 started from a plane.)

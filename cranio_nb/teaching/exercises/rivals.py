@@ -159,10 +159,6 @@ EXERCISES: dict[str, Exercise] = {
                 "This is the direction in which the middles spread, and that is in the plane.",
             ),
             (
-                lambda a, b: (np.linalg.svd(a - b - (a - b).mean(axis=0))[2][0], _plane(a, b)[1]),
-                "The mean of the differences is taken away, and just this is the normal's direction.",
-            ),
-            (
                 lambda a, b: (_plane(a, b)[0], (a + b).mean() / 2),
                 "The point is one number, the mean of all coordinates: each axis has its own mean, axis=0.",
             ),
