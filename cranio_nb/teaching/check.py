@@ -40,6 +40,7 @@ _CAUSES = {
     "boolean subtract": "Masks cannot be subtracted: join them by & and ~.",  # numpy advises ^, another wrong answer
     r"for \^": _POWER,
     "'bitwise_xor' not supported": _POWER,
+    "the concatenation axis": "The arrays to join differ in shape. (Of what query of a tree gives, [0] are distances.)",
     "truth value of an array": "`and`, `or`, `not` and `if` want one value, not an array: join masks by &, | and ~.",
     r"size (\d+) is different from (\d+)": r"`@` met \2 columns left and \1 rows right of it: as many are wanted.",
     "'tuple'|tuple indices": "A tuple holds several values: take them apart, as in `labels, n = ...`.",
@@ -183,11 +184,15 @@ def _why_stopped(error: BaseException) -> str:
 
 
 def _about_shapes(error: BaseException) -> str:
-    """What is said besides where one number for each row meets a table as if it were a row of it."""
+    """What is said besides where the shapes tell a likely cause: a column lost, a wrong axis, A A^T for A^T A."""
     shapes = sorted(re.findall(r"\((\d+),(\d*)\)", str(error)), key=lambda shape: shape[1] == "")
     match shapes if isinstance(error, ValueError) and "broadcast" in str(error) else ():
         case [(rows, columns), (n, "")] if columns and n == rows:
             return f" - {n} numbers for {n} rows: keep it a column, as [:, [i]], [:, None] or keepdims=True do."
+        case [(rows, columns), (n, "") | ("1", n)] if columns and n not in (rows, columns):
+            return f" - {n} numbers for {rows} rows: summed along the wrong axis, or some left out?"
+        case [(rows, columns), (n, m)] if rows == columns and n == m:
+            return f" - {rows} against {n}: is a product turned round (A @ A.T for A.T @ A), or an edge cut off?"
     return ""
 
 

@@ -10,13 +10,13 @@
 # # 08 Rivals: a rubber sheet, a mirror, a flat fill
 #
 # A method is only as good as it is better than something simpler. Three rivals close the same hole here: the convex
-# hull, the mirrored other side, and a fill between guiding points on a mesh. Each fails in its own way, and each way
-# can be told beforehand, with a pencil.
+# hull, the mirrored other side, and a fill between guiding points on a mesh. Each fails in its own way, and a little
+# geometry says why.
 #
 # **After this lesson you can**
-# - say for which holes a convex hull will do, from the diameter alone;
-# - read a symmetry plane (angle, offset, residual) and tell what an asymmetric head costs a mirror;
-# - explain the planar bias of a least-area fill, and predict its size;
+# - estimate from a hole's diameter whether a convex hull will do;
+# - read a symmetry plane (angle, offset, residual) and say what the residual does not tell;
+# - explain the planar bias of a least-area fill, and why its mean is about half of its largest distance;
 # - compare four methods in one fair table.
 #
 # **Time:** 50 minutes (text 20, questions 10, exercises 20). **You need:** lessons 05 and 07.
@@ -104,19 +104,19 @@ for seed in range(3):
     holes[f"burr hole {seed}"] = burr, drilled, small, closed
 
 # %% tags=["nbval-check-output"]
-print("               size (mm)   sphere   Dice of the hull")
+print("               size (mm)   sphere   hull: Dice   HD95")
 for name, (one, skull, opening, closed) in holes.items():
     a, b = widths(one.truth, opening.direction)
     depth = 75 - np.sqrt(75**2 - max(a, b) ** 2 / 4)
-    dice = cn.score(closed.patch, one.truth, skull).dice
-    print(f"{name:12} {a:5.0f} x {b:2.0f} {depth:9.1f} mm {dice:12.3f}")
+    s = cn.score(closed.patch, one.truth, skull)
+    print(f"{name:12} {a:5.0f} x {b:2.0f} {depth:9.1f} mm {s.dice:9.3f} {s.hd95:6.2f} mm")
 deepest = against_truth.measure_against(sheet, true, bone).distances["outer"].max()
 print(f"this hole: the hull lies {deepest:.1f} mm from the true outer side at most")
 
 # %% [markdown]
-# So the same hull that fails across our hole will do for a burr hole, on each of three heads. And across our hole
-# it lies less deep than the sphere foretells: the side of a head is flatter than a sphere of 75 mm, and the rim
-# of the hole is not plane.
+# So the same hull that fails across our hole will do for a burr hole (HD95 0.90 mm, one pixel), on each of three heads.
+# And across our hole it lies less deep than the sphere foretells: the side of a head is flatter than a sphere of 75 mm,
+# and the rim of the hole is not plane.
 #
 # ## 2. The mirror
 #

@@ -101,8 +101,8 @@ print(f"radius of the map's mm: {vault.step_mm / vault.grid.step_rad:.0f} mm")
 print(f"radius of the missing bone: {away.min():.0f} to {away.max():.0f} mm")
 
 # %% [markdown]
-# (In the white corner, far from the hole, no vault was found. The fine rings, plainest in the map of the thickness, are
-# steps of one voxel.)
+# (In the white corner, far from the hole, no vault was found, and in the dark band beside it the rays meet the edge of
+# the bone. The fine rings, plainest in the map of the thickness, are steps of one voxel.)
 #
 # A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
 # no better than flat starts from a sphere. (The flat fill of lesson 08 started from a plane.)
@@ -311,7 +311,7 @@ for a, b in ((1.3, 1.8), (8.5, 11)):
 # h = g - f* in place of that of g, and inside the hole k |h|^2 besides, weak springs that pull the plate to f*.
 #
 # **Question.** The springs have one strength k everywhere. Why do they hardly act in a burr hole (a small one, from a
-# drill), but decide in a wide one? (How does the force that bends a plate by 1 mm change with the plate's size?) Here
+# drill), but decide in a wide one? (How does the energy of a plate bent by 1 mm change with its size?) Here
 # is a test: the bone around a round hole says 0, the prior says 1. What has the middle of the hole?
 
 # %% tags=["nbval-check-output"]
@@ -500,7 +500,7 @@ parabola = 75 - x**2 / 150
 lines = {f"order {n}": bridge(parabola, known, n, 1e4) - parabola for n in (2, 3)}
 ax.axvspan(-25, 25, color=pictures.BONE, alpha=0.4, label="gap")
 pictures.plot_lines(ax, x, lines, xlabel="mm", ylabel="above the truth (mm)")
-alt = "Bridges minus a true parabola, the gap grey: order 2 is off in it, order 3 nowhere."
+alt = "Bridges minus a parabola: order 2 is off in the gap and at the ends, order 3 nowhere."
 pictures.picture(fig, alt, f"order 3: {np.abs(lines['order 3']).max():.3f} mm off at most")
 
 # %% [markdown]

@@ -158,9 +158,9 @@ EXERCISES: dict[str, Exercise] = {
                 "The points stop on a plane through 0, 0, 0: go twice as far, and measure from the origin given.",
             ),
             (lambda p, n, o: p - 2 * n, "All points are moved by the same step: each goes twice its own distance."),
-            (
-                lambda p, n, o: p - 2 * (p - o) * n,
-                "The distance is a dot product, (points - origin) @ normal; this multiplies axis by axis.",
+            *(
+                (mistake, "The distance is a dot product, (points - origin) @ normal; this multiplies axis by axis.")
+                for mistake in (lambda p, n, o: p - 2 * (p - o) * n, lambda p, n, o: p - 2 * (p - o) * n * n)
             ),
             (
                 lambda p, n, o: o - 2 * ((p - o) @ n)[:, None] * n,

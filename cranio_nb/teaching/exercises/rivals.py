@@ -159,6 +159,10 @@ EXERCISES: dict[str, Exercise] = {
                 "This is the direction in which the middles spread, and that is in the plane.",
             ),
             (
+                lambda a, b: (_plane(a, b)[0], (a + b).mean() / 2),
+                "The point is one number, the mean of all coordinates: each axis has its own mean, axis=0.",
+            ),
+            (
                 lambda a, b: (_each_unit(a, b), (a + b) / 2),
                 "A normal and a point for each pair: one of each is wanted, the mean of all.",
             ),

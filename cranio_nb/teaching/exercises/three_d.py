@@ -92,9 +92,12 @@ EXERCISES: dict[str, Exercise] = {
                 lambda n, order: np.diff(np.eye(n), order),
                 "Rows and columns are exchanged: np.diff works along the last axis unless told axis=0.",
             ),
-            (
-                lambda n, order: np.diff(np.eye(n), axis=0) ** order,
-                "Powers of the entries: a difference of order 2 is the difference of differences, 1, -2, 1.",
+            *(
+                (mistake, "Powers of the entries: a difference of order 2 is the difference of differences, 1, -2, 1.")
+                for mistake in (
+                    lambda n, order: np.diff(np.eye(n), axis=0) ** order,
+                    lambda n, order: np.diff(np.eye(n), axis=0)[: n - order] ** order,
+                )
             ),
             (lambda n, order: np.diff(np.eye(n), axis=0), "This is the first difference, whatever the order."),
             (

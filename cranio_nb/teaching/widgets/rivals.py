@@ -235,14 +235,14 @@ def _mirror_view(
     """Bone and mirror image in a slice, and the residual over the vault."""
     canvas = Canvas(WIDTH, HEIGHT)
     canvas.inlay(_mirrored_slice(bone, window, mirror, plane), 0, 0)
-    # residuals of all rays as a map, scaled to the square; from above the patient's left is at the left
-    residual = np.abs(symmetry.mirror_residuals(surface, mirror)).astype(np.float32)[:, ::-1]
+    # residuals of all rays as a map, scaled to the square; its sides are those of the slice beside it
+    residual = np.abs(symmetry.mirror_residuals(surface, mirror)).astype(np.float32)
     side = _HALF - 40
     rows = np.linspace(0, len(residual) - 1, side).round().astype(int)
     left, top = _HALF + 20, 80
     canvas.place(coloured(residual[np.ix_(rows, rows)], _TOP), left, top)
-    canvas.text(left, top - 14, "the vault from above: residual (mm)")
-    canvas.sides((left, top, side, side), right=(-1, 0, 0))
+    canvas.text(left, top - 14, "the vault, sides as at the left: residual (mm)")
+    canvas.sides((left, top, side, side))
     draw_colour_scale(canvas, (left, top + side + 16), side, _TOP)
     known = residual[np.isfinite(residual)]
     line = "Turned by {turn_deg:g} and leaning by {lean_deg:g} degrees, shifted by {shift_mm:g} mm: ".format(**move)

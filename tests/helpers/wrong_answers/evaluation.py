@@ -28,6 +28,10 @@ WRONG = {
         ((f"{NEAREST}; return np.percentile(there + back, 95)"), "stopped with ValueError"),
         ((f"{NEAREST}; return np.percentile([there, back], 95)"), "stopped with ValueError"),
         ("return spatial.cKDTree(b).query(a)", "One number is wanted"),
+        (
+            "return np.percentile(np.concatenate([spatial.cKDTree(b).query(a), spatial.cKDTree(a).query(b)]), 95)",
+            "[0] are distances",
+        ),
         ("return spatial.distance.directed_hausdorff(a, b)[0]", "This is the largest distance"),
         (
             "i = spatial.cKDTree(b).query(a)[1]; return np.percentile(i, 95)",
@@ -74,6 +78,7 @@ WRONG = {
         ("return points - (points @ normal)[:, None] * normal", "The points stop on a plane through 0"),
         ("return points - 2 * normal", "All points are moved by the same step"),
         ("return points - 2 * (points - origin) * normal", "The distance is a dot product"),
+        ("return points - 2 * (points - origin) * normal * normal", "The distance is a dot product"),
         ("return 2 * origin - points", "This is a point reflection"),
         ("return origin - 2 * np.outer((points - origin) @ normal, normal)", "The steps are taken off the origin"),
         ("return -2 * np.outer((points - origin) @ normal, normal)", "These are the steps alone"),

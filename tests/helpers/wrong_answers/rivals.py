@@ -44,6 +44,7 @@ WRONG = {
             "A normal and a point for each pair",
         ),
         ("n = (a - b).mean(); return n, (a + b).mean() / 2", None),
+        ("n = (a - b).sum(axis=0); return n / np.linalg.norm(n), (a + b).mean() / 2", "its own mean"),
         ("n = (a - b).mean(axis=0); return n / n.sum(), (a + b).mean(axis=0) / 2", "Divided by the sum of its parts"),
         (
             "n = a.mean(axis=0) - b.mean(axis=0); n /= np.linalg.norm(n); return n, b.mean(axis=0)",

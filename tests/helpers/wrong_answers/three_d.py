@@ -9,6 +9,7 @@ WRONG = {
     "9.1": [
         ("return np.diff(np.eye(n), n=order)", "exchanged"),
         ("d = np.eye(n)[1:] - np.eye(n)[:-1]; return d**order", "difference of differences"),
+        ("d = np.eye(n - order, n, k=1) - np.eye(n - order, n); return d**order", "difference of differences"),
         ("return np.eye(n)[1:] - np.eye(n)[:-1]", "first difference"),
         ("d = np.eye(n); return d[2:] - 2 * d[1:-1] + d[:-2]", "second difference"),
         ("return np.diff(np.eye(n), order - 1, axis=0)", "too low"),
@@ -56,7 +57,7 @@ WRONG = {
         (f"{SPLINE}; return np.linalg.solve(W - strength * D.T @ D, W @ f)", "sign of the smoothing"),
         (f"{SPLINE}; return np.linalg.solve(strength * D.T @ D - W, W @ f)", "sign of W"),
         (f"{SPLINE}; return np.linalg.solve(W + strength * D.T @ D, -W @ f)", "sign is turned"),
-        ((f"{SPLINE}; return np.linalg.solve(W + strength * D @ D.T, W @ f)"), "stopped with ValueError"),
+        ((f"{SPLINE}; return np.linalg.solve(W + strength * D @ D.T, W @ f)"), "A @ A.T for A.T @ A"),
         ((f"{SPLINE}; return np.linalg.lstsq(W + strength * D.T @ D, f)[0]"), "What stands in the gap still pulls"),
         (
             (f"{SPLINE}; return np.where(known, f, np.linalg.solve(W + strength * D.T @ D, W @ f))"),
@@ -106,6 +107,8 @@ WRONG = {
         ((f"{BASIS}; return B * weights @ points / B.sum(axis=1, keepdims=True)"), "Divide by the sum of w_i B_i(t)"),
         ((f"{BASIS}; s = B * weights; return s @ points / s.sum()"), "This divides by the sum over all t"),
         ((f"{BASIS}; s = B * weights; return s @ points / s.sum(axis=0)[:2]"), "Summed the wrong way"),
+        (f"{BASIS}; s = B * weights; return s @ points / s.sum(axis=0)", "along the wrong axis"),
+        (f"{BASIS}; s = B * weights; return s @ points / s.sum(axis=0, keepdims=True)", "along the wrong axis"),
         (
             (f"{BASIS}; s = B * weights; return (s @ points / s.sum(axis=1, keepdims=True)).T"),
             "Rows and columns are exchanged",
