@@ -117,7 +117,8 @@ _ = panel.set(**start)
 # Each setting on each head, by Dice (more is better) and by the mean distance of the two surfaces (less is better). In
 # the picture a line is the mean of the three heads, and the grey band one standard deviation to each side. `auto` is
 # the `k` that follows from the ends; it differs from slice to slice, so it has no place among the others and comes
-# first. (0.248 is 4 x 0.062: what 0.062 mm with N = 40, as in lesson 10's sliders, becomes with N = 20.)
+# first; the line from it to 0 says nothing. (0.248 is 4 x 0.062, the paper's figure, here in mm and meant for N = 40 as
+# under the sliders of lesson 10.)
 
 # %%
 sweeps = {
@@ -212,8 +213,9 @@ print(f"correlation of both: {np.corrcoef(means, there)[0, 1]:.2f}")
 # 0.005. Too low a threshold costs 0.046. The distances say the same in mm.
 #
 # The three heads are alike here, from 0.936 to 0.942 with the default. Still, three are few: a change of less than
-# three times its error says nothing. That goes for a skip of 8 mm (2.2 times), for a threshold of 700 HU (2.7 times), for a reach of 25
-# mm and for `k` at 0.08. Whoever wants to know needs more heads (section 5), and better ones with real rims.
+# three times its error says nothing. That goes for a skip of 8 mm (2.2 times), for a threshold of 700 HU (2.7 times),
+# for a reach of 25 mm and for `k` at 0.08. Whoever wants to know needs more heads (section 5), and better ones with
+# real rims.
 #
 # The finer head of the last column agrees: 11 of 12 settings lie on the same side of the default, and the correlation
 # is 0.97. The odd one out is `k` at 0.08: as good as the automatic one here, and clearly worse there.
