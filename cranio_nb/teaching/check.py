@@ -38,11 +38,13 @@ _STOPPED: dict[type[BaseException], str] = {
 _POWER = "A power is written `**`: `^` is either one without the other."
 _CAUSES = {
     "boolean subtract": "Masks cannot be subtracted: join them by & and ~.",  # numpy advises ^, another wrong answer
-    "for ^": _POWER,
+    r"for \^": _POWER,
     "'bitwise_xor' not supported": _POWER,
     "truth value of an array": "`and`, `or`, `not` and `if` want one value, not an array: join masks by &, | and ~.",
+    r"size (\d+) is different from (\d+)": r"`@` met \2 columns left and \1 rows right of it: as many are wanted.",
+    "'tuple'|tuple indices": "A tuple holds several values: take them apart, as in `labels, n = ...`.",
 }
-"""Words of an error, and what is said instead of them."""
+"""Words of an error, as a pattern, and what is said instead of them."""
 
 
 class _NoAnswerError(Exception):
@@ -173,9 +175,9 @@ def _same(given: Any, case: Any) -> bool:
 
 def _why_stopped(error: BaseException) -> str:
     """What a function stopped with, in words that lead on."""
-    for found, cause in _CAUSES.items():
-        if found in str(error):
-            return cause
+    for pattern, cause in _CAUSES.items():
+        if found := re.search(pattern, str(error)):
+            return found.expand(cause)
     words = f"The function stopped with {type(error).__name__}: {_first_line(error)}{_about_shapes(error)}"
     return _STOPPED.get(type(error), words)
 

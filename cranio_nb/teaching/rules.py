@@ -65,7 +65,18 @@ def rule_for(trial: Trial) -> str:
     >>> rule_for(Trial(lambda r, h: r, [(1.0, 2.0), (3.0, 5.0)], [2.0, 15.0], [1.0, 3.0]))
     'Each of your numbers is right but for a factor that goes with 1 / h.'
     """
-    for rule in (_by_argument, _by_field, _by_form, _by_mask, _by_order, _by_number, _by_power, _by_unused, _by_place):
+    for rule in (
+        _by_argument,
+        _by_field,
+        _by_form,
+        _by_mask,
+        _by_order,
+        _by_number,
+        _by_rounding,
+        _by_power,
+        _by_unused,
+        _by_place,
+    ):
         if sentence := rule(trial):
             return sentence
     return ""
@@ -186,6 +197,16 @@ def _by_number(trial: Trial) -> str:
     step = float(np.median(one - other))
     if near(one - other, np.full_like(one, step)):
         return f"Each of your numbers is {abs(step):.4g} too {'large' if step > 0 else 'small'}."
+    return ""
+
+
+def _by_rounding(trial: Trial) -> str:
+    """The right numbers with fewer digits; where all are alike that says nothing."""
+    if not (pairs := _alike(trial, masks=False)):
+        return ""
+    one, other = (np.concatenate([np.ravel(pair[i]).astype(float) for pair in pairs]) for i in (0, 1))
+    if np.ptp(one) > 0 and any(np.array_equal(one, np.round(other, digits)) for digits in range(5)):
+        return "The numbers were rounded: return them as they are."
     return ""
 
 

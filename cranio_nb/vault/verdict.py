@@ -113,8 +113,9 @@ class Rule:
 
 RULES = (
     Rule(
-        f"{_ACROSS_MM:g} mm of bone or more lie across its middle, but less than {_PLAIN_MM:g} mm or"
-        f" {100 * _BLUR_SHARE:g} % of its rim's thickness, and it is narrower than {_BLURRED_MM:g} mm",
+        f"{_ACROSS_MM:g} mm of bone or more lie across its middle, but less than {_PLAIN_MM:g} mm or than"
+        f" {100 * _BLUR_SHARE:g} % of its rim's thickness (the larger counts),"
+        f" and it is narrower than {_BLURRED_MM:g} mm",
         lambda s: _ACROSS_MM <= s.across_mm < max(_PLAIN_MM, _BLUR_SHARE * s.rim_mm) and s.diameter_mm < _BLURRED_MM,
         lambda s: Verdict(True, 0.4, "Some bone lies across it: thin bone, or a small hole blurred by the slices."),
     ),

@@ -74,9 +74,9 @@ viewer
 #
 # ## 2. Bone (stage 1)
 #
-# Everything from 400 HU up is bone: so the paper has it, and lesson 02 asks what difference the number makes. Then the
-# couch under the head and loose specks are dropped and small holes are closed. What comes out is a **mask**: True where
-# a voxel is bone, False elsewhere.
+# Everything from 400 HU up is bone: this is the paper's lower bound, and lesson 02 asks what difference it makes. Then
+# the couch under the head and loose specks are dropped and small holes are closed. What comes out is a **mask**: True
+# where a voxel is bone, False elsewhere.
 
 # %% tags=["nbval-check-output"]
 bone = cn.segment(ct, threshold=400)
@@ -96,9 +96,9 @@ print(f"{len(openings)} opening, in planes {first} to {end - 1}")
 diagrams.ray_fan(bone, openings[0])
 
 # %% [markdown]
-# Grey rays end at the bone, black ones leave: side by side they make one opening, and the light blue sheet is what the
-# package keeps of it. The other rays measure the skull, one outer and one inner radius for each direction (at the
-# right). Lesson 09 works on these radii alone.
+# Grey rays end at the bone, black ones leave: side by side they make one opening. The light blue sheet, laid across it,
+# is how the package keeps its place. The other rays measure the skull, one outer and one inner radius for each
+# direction (at the right). Lesson 09 works on these radii alone.
 #
 # ## 4. One slice: ends, tangents, balloon (stages 2 and 3)
 #
@@ -135,11 +135,11 @@ player.set(preset="tangent pressure: k from the ends", step=300)
 # <summary>Answer</summary>
 #
 # The paper's pressure is the same for every gap, and for this one it is too weak: the curve comes out too flat, 3.8 px
-# high instead of 7.2. With k = -0.1 the wind blows the other way, and the curve sinks below the chord. The clamp at
-# each end holds the tangent over about one snaxel (a dot of the curve) only; further on the wind wins. So the curve
-# becomes a flat S: next to the steeper end it is still 0.6 px above the chord, and further on 2.8 px below. The energy
-# falls at first (from 165.5 to 158.9 px2, step 38) and then *rises* (to 160.3): energy is what the bent and stretched
-# curve holds, and the wind does work on it. Lesson 04 has this account, and tells which `k` fits and why.
+# high instead of 7.2. With k = -0.1 the wind blows the other way, and the curve sinks below the chord. Each end holds
+# its tangent over about one snaxel (a dot of the curve) only; further on the wind wins. So the curve becomes a flat S:
+# next to the steeper end it is still 0.6 px above the chord, and further on 2.8 px below. The energy falls at first
+# (from 165.5 to 158.9 px2, step 38) and then *rises* (to 160.3): energy is what the bent and stretched curve holds, and
+# the wind does work on it. Lesson 04 has this account, and tells which `k` fits and why.
 #
 # </details>
 #
@@ -147,17 +147,20 @@ player.set(preset="tangent pressure: k from the ends", step=300)
 
 # %% tags=["nbval-check-output"]
 again = widgets.balloon(outer, inside)
+print(again.set(preset="tangent pressure: k from the ends", step=300).view.line)
+again.set(preset="paper: k as set below")
 for k, step in ((0.062, 300), (-0.1, 0), (-0.1, 38), (-0.1, 300)):
     print(again.set(pressure=k, step=step).view.line)
 
 # %% [markdown]
 # ## 5. All slices (stage 4), and the surface (stage 5)
 #
-# `design` closes the whole hole so: it lets curves bulge in many slices, fills between them, and wraps the filled voxels
-# in triangles. Its slices are not those of the scan, as in section 4 and in the paper, but planes through the hole in
-# six directions. Lesson 05 shows why this comes nearer (`axial=True` would take the scan's own).
+# `design` closes the whole hole so: it lets curves bulge in many slices, fills between them, and wraps the filled
+# voxels in triangles. Its slices are not those of the scan, as in section 4 and in the paper, but planes through the
+# hole in six directions. Lesson 05 shows why this comes nearer (`axial=True` would take the scan's own). The key of the
+# picture calls this method *slicewise*.
 #
-# *Can be built* means: the surface is closed, in one sense outward, and no two triangles pass through each other
+# *Can be built* means: the surface is closed, all its triangles face outward, and no two pass through each other
 # (lesson 06).
 
 # %% tags=["nbval-check-output"]
@@ -184,11 +187,12 @@ cn.show(bone, prosthesis)
 
 # %% [markdown]
 # *In a live notebook and on the site this head turns with the mouse.* Its top is flat because the slices are 2.5 mm
-# apart (section 1): the highest slice with bone is a disc, and there is nothing between it and the next.
+# apart (section 1): the highest slice with bone is a disc, and there is nothing between it and the next. The flat spot
+# under the hole is the outermost column of voxels in the same way.
 #
-# That is the whole way: a scan went in, a solid came out. Here it is in one picture, drawn from what this notebook made.
-# Each stage has the name of its module in `cranio_nb.stages`; the frame in the second picture is what the next three
-# show from near by: one slice of the scan, as in section 4.
+# That is the whole way: a scan went in, a solid came out. Here it is in one picture, drawn from what this notebook
+# made. Each stage has the name of its module in `cranio_nb.stages`; the frame in the second picture is what the next
+# three show from near by: one slice of the scan, as in section 4.
 
 # %% tags=["nbval-check-output"]
 diagrams.pipeline(ct, bone, openings[0], prosthesis)

@@ -77,7 +77,8 @@ print(f"{ct.shape} voxels of {np.round(ct.spacing, 2)} mm")
 # **window**: below centre - width / 2 all is black, above centre + width / 2 all is white.
 #
 # **Predict, then move, then explain.** Where do you put centre and width to see (a) only bone, (b) the brain against
-# the skin? Try it, with the sliders or in a new cell with `viewer.set(centre=300, width=1500)` and your numbers.
+# the skin (soft tissue)? Try it, with the sliders or in a new cell with `viewer.set(centre=300, width=1500)` and your
+# numbers.
 
 # %% tags=["nbval-check-output"]
 case = classroom.load("class")
@@ -121,7 +122,8 @@ print("voxel (10, 64, 64) lies at", np.round(ct.to_world([10, 64, 64]), 2), "mm"
 
 # %% [markdown]
 # Voxels are rarely cubes. Forget it, and the head is squashed. Both pictures have the same scale along the rows; A is
-# the front, P the back, S above (superior), I below (inferior).
+# the front, P the back, S above (superior), I below (inferior). The gap in the floor of the skull is natural: the
+# spinal cord leaves there. The hole of lesson 00 lies at the left side, outside of this picture.
 
 # %% tags=["nbval-check-output"]
 middle = ct.voxels[:, :, ct.shape[2] // 2]
@@ -160,8 +162,9 @@ print(f"normal {normal}, height of the first file's slice {position @ normal:.2f
 # say so, or refuse it. The fourth, *silently wrong*, is the one to fear. We try three faults.
 #
 # **Predict** for each which answer you would want: (a) file names in random order, (b) a scanner that leans by 15
-# degrees (gantry tilt), (c) one file missing in the middle. (The **kernel** in the output says how sharply the scanner
-# turned its measurements into a picture: a soft one has less noise, a sharp one clearer edges.)
+# degrees (gantry tilt), (c) one file missing in the middle. (In the output stands the number that the header gives the
+# series, and the **kernel**, which says how sharply the scanner turned its measurements into a picture: a soft one has
+# less noise, a sharp one clearer edges.)
 
 # %% tags=["nbval-check-output"]
 tilted = classroom.synthetic("class", tilt_deg=15.0).phantom
@@ -205,7 +208,8 @@ print(f"so {more:.0f} rows more: {n_rows + more:.0f} instead of {n_rows}")
 # ## A mistake to make once
 #
 # Files get lost when a folder is copied. A reader that takes `SliceThickness` for the distance and stacks what is there
-# would make the head 2.5 mm shorter, and the prosthesis too. We lose a file of a copy, so that `folder` stays whole.
+# would make the head 2.5 mm shorter, and a prosthesis across the gap too. We lose a file of a copy, so that `folder`
+# stays whole.
 
 # %% tags=["raises-exception"]
 lossy = classroom.scratch_folder(copy_of=folder)
@@ -224,8 +228,8 @@ for finding in report.findings:
 # %% [markdown]
 # ## Exercises
 #
-# **Exercise 1.1.** Windowing. Return grey levels from 0 to 255 (floats or integers): exactly 0 at centre - width / 2 and
-# below, exactly 255 at centre + width / 2 and above, and rising evenly between.
+# **Exercise 1.1.** Windowing. Return grey levels from 0 to 255 (floats or integers): exactly 0 at centre - width / 2
+# and below, exactly 255 at centre + width / 2 and above, and rising evenly between.
 
 
 # %% tags=["solution"]

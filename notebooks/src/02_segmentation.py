@@ -39,8 +39,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 # |---|---|---|---|
 # | `threshold` | lowest HU of bone | HU | 400 |
 # | `upper` | highest HU of bone | HU | 1000 (we set none) |
-# | `max_hole_mm2` | holes up to this area are filled (`max_hole_px` in `segmentation.fill_holes`) | mm2 | not given |
-# | `min_part` | loose parts under this share of the skull go | share, e.g. a fiftieth | not given |
+# | `max_hole_mm2` | holes up to this area are filled (60; `max_hole_px` in `segmentation.fill_holes`) | mm2 | not given |
+# | `min_part` | loose parts under this share of the skull go: a fiftieth | share | not given |
 #
 # The synthetic head is made of hard bone of 1200 HU, spongy bone of 650 HU and soft tissue of 50 HU
 # (`data_synth.phantom`).
@@ -57,8 +57,8 @@ print(f"a pixel is {px:.1f} mm wide")
 # ## 1. The threshold
 #
 # **Predict, then move, then explain.** What changes *most* if you raise the threshold from 400 to 800 HU: the outline
-# of the bone, or its inside? (No sliders? Use `panel.set(threshold_hu=800)` in a new cell. The chart at the right counts
-# voxels of the whole scan; that of lessons 00 and 01 those of one slice.)
+# of the bone, or its inside? (No sliders? Use `panel.set(threshold_hu=800)` in a new cell. The chart at the right
+# counts voxels of the whole scan; that of lessons 00 and 01 those of one slice.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.threshold(ct)
@@ -70,10 +70,10 @@ panel
 #
 # The inside. A skull bone is a sandwich: two hard plates (about 1200 HU here) around spongy **diploe** (about 650 HU).
 # The outline moves slowly, by part of a voxel: 0.3 mm from 400 to 625 HU (section 2; a pixel is 0.9 mm). Inside, holes
-# begin to open near 500 HU, where the softest voxels of the diploe go first, but you do not see them, for they are
-# small and filled (the caption counts them: 1, 29 and 269 mm2 at 400, 500 and 625 HU). Between 625 and 800 HU all the
-# diploe goes: the holes run together, become larger than what is filled, and two shells remain. (The caption still says
-# 1 piece: bridges remain between the shells, at the rim of the hole and where the diploe is dense.)
+# begin to open near 500 HU, where the softest voxels of the diploe go first; they are small, and filled (green; the
+# caption counts them: 1, 29 and 269 mm2 at 400, 500 and 625 HU). Between 625 and 800 HU nearly all the diploe goes: the
+# holes run together, become larger than what is filled, and two shells remain. (The caption still says 1 piece: bridges
+# remain between the shells, at the rim of the hole and where the diploe is dense.)
 #
 # </details>
 #
@@ -201,16 +201,17 @@ pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} afte
 # ## 5. Which hole was cut?
 #
 # A mask has more holes than the surgeon made: natural ones, and places where bone is so thin that its HU stay under the
-# threshold. A prosthesis for such a hole would be worse than none. So each opening gets a **verdict**: *cut*, *natural*,
-# or *doubtful* where the signs do not suffice, with a **confidence** between 0 and 1 and a reason. What was cut is
-# closed; doubtful ones are listed and left to you: `cranio-nb design path/to/scan --opening 2 --out folder` closes the
-# second of the list.
+# threshold. A prosthesis for such a hole would be worse than none. So each opening gets a **verdict**: *cut*,
+# *natural*, or *doubtful* where the signs do not suffice, with a **confidence** between 0 and 1 and a reason. What was
+# cut is closed; doubtful ones are listed and left to you: `cranio-nb design path/to/scan --opening 2 --out folder`
+# closes the second of the list.
 #
 # Some words first. The **vault** is the dome of the skull, a single wall. The **base** is the floor under the brain. In
-# it are *foramina*, holes for nerves, vessels and the spinal cord; before it lie the *orbits* (eye sockets), the nose
-# and the *sinuses* (hollows in the bone of the face). There one thin wall stands behind another. The **rim** is the bone
-# around an opening. Left, front and top are those of the head itself, read off its face, its midline and the hollow of
-# the brain, so that it does not matter how the head lies in the scanner.
+# it are *foramina*, holes for nerves, vessels and the spinal cord; in front of it lie the *orbits* (eye sockets), the
+# nose and the *sinuses* (hollows in the bone of the face). There one thin wall stands behind another. The **rim** is
+# the bone around an opening. A slice *cuts flat* where it runs along the bone, as at the top of the head. Left, front
+# and top are those of the head itself, read off its face, its midline and the hollow of the brain, so that it does not
+# matter how the head lies in the scanner.
 #
 # This is the whole rule; the first line that holds decides:
 
@@ -219,7 +220,8 @@ for number, (when, kind, confidence) in enumerate(cn.vault.verdict.rule_rows(), 
     print(f"{number}. {when}\n   -> {kind}, confidence {confidence}")
 
 # %% [markdown]
-# The openings of this head, as `cranio-nb inspect` lists them. In brackets stands the way from the middle of the head to
+# The openings of this head, as `cranio-nb inspect` lists them. They are looked for in the vault and a little below it;
+# the one in the floor (lesson 01, side view) is not listed. In brackets stands the way from the middle of the head to
 # the opening, each side by name that it plainly leads to (up to the left here), then size and planes, both ends
 # included:
 
@@ -228,8 +230,8 @@ for one in cn.survey_openings(masks[2], scan=ct):
     print(one)
 
 # %% [markdown]
-# Why only 0.60, the least that the last rule gives? Our head has no face, so nothing shows how it lies, and which
-# part is the vault rests on the axes of the scan alone. The more surely the bone shows how the head lies, and the
+# Why only 0.60, the least that the last rule gives? Our head has no face, the first of the signs of how a head lies, so
+# which part is the vault rests on the axes of the scan alone. The more surely the bone shows how the head lies, and the
 # more of the opening lies above the base, the nearer the confidence comes to 1.00.
 #
 # **Predict.** We fill the missing bone with thin bone: HU above those of soft tissue, but below the threshold. The mask
@@ -250,9 +252,9 @@ if case.truth is not None:
 # <summary>Answer</summary>
 #
 # From the mask alone it was cut: a hole in the vault with a single wall around it. Whether something thin is left in it
-# no mask can tell, and the reason says so. The HU show the bone. Its thickness across the hole is the excess of the HU over those of the brain, summed along a ray and
-# divided by the excess of solid bone: partial volume, as in section 2, used the other way round. So give the scan
-# wherever you have it.
+# no mask can tell, and the reason says so. The HU show the bone. Its thickness across the hole is the excess of the HU
+# over those of the brain, summed along a ray and divided by the excess of solid bone: partial volume, as in section 2,
+# used the other way round. So give the scan wherever you have it.
 #
 # </details>
 #

@@ -258,9 +258,9 @@ print("; ".join(each))
 # With `reach` 6, 10, 25 px the scatter falls in each of the four heads, and from 10 to 25 px the mean error more than
 # doubles: that is the trade of noise against bias. With 44 px, the 40 mm of question 3, there is no less scatter and
 # nearly twice the error again. (At 6 px the noise is too large to tell the bias, and some slices are refused, too.)
-# With `skip` = 0 the cut face adds an error of its own, larger and to the other side. From `skip` 5 to 10 px the angles
-# grow mostly because the gap is wider. And 3 px do as well as 5 px here, where the cut is clean: the mean errors and the
-# scatters are alike.
+# With `skip` = 0 the cut face adds an error of its own, to the other side and larger than any with the same `reach`.
+# From `skip` 5 to 10 px the angles grow mostly because the gap is wider. And 3 px do as well as 5 px here, where
+# the cut is clean: the mean errors and the scatters are alike.
 #
 # **Question.** The paper leaves out "10 points". On a scan with pixels twice as large, is this the same?
 #

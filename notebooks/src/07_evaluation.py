@@ -157,8 +157,9 @@ print(f"a ball of {radius:.0f} mm radius, moved by one voxel: Dice {dice:.3f}")
 #
 # (a) For a thin shell Dice is harsh: a shift by one voxel (0.9 mm) across it leaves 0.830, while a ball of as much bone
 # would keep 0.958. Our design has 0.969. HD95 does not see the difference: both have 0.90 mm, one pixel. (b) HD95 sees
-# what is missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is as bad as the shift for
-# Dice (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints several.
+# what is missing, and so does Dice; the one-way distance is exactly 0. (c) One voxel thicker is nearly as bad as the
+# shift for Dice (0.851), and HD95 is 1.27 mm, the diagonal of a pixel. No single number will do; the package prints
+# several.
 #
 # </details>
 #

@@ -114,8 +114,9 @@ deepest = against_truth.measure_against(sheet, true, bone).distances["outer"].ma
 print(f"this hole: the hull lies {deepest:.1f} mm from the true outer side at most")
 
 # %% [markdown]
-# So the same hull that fails across our hole will do for a burr hole, on each of three heads. And it lies less deep
-# than the sphere foretells: the side of a head is flatter than a sphere of 75 mm, and the rim of the hole is not plane.
+# So the same hull that fails across our hole will do for a burr hole, on each of three heads. And across our hole
+# it lies less deep than the sphere foretells: the side of a head is flatter than a sphere of 75 mm, and the rim
+# of the hole is not plane.
 #
 # ## 2. The mirror
 #
@@ -253,7 +254,7 @@ print(f"here in mm: max {in_mm.max():.2f}; a voxel is {size}")
 
 # %% [markdown]
 # Nearly the same ratio, a half. So the paper's largest distance of 6.06 voxels may well be the height of the cap that
-# was missing, and the mean is what geometry makes of it. (4.82 voxels here are 5.10 mm: the way to the true surface
+# was missing, and the mean is what geometry makes of it. (The 4.82 voxels here are 5.10 mm: the way to the true surface
 # leads a little upwards, too, and a voxel is 0.9 mm wide but 2.5 mm high. The panel above measures the film itself,
 # before it is made of voxels: 5.14 mm at most. That its mean of 2.54 mm equals the table's 2.54 voxels is chance.)
 #
@@ -276,6 +277,8 @@ print(f"paper, You et al. {you.mean:8.2f} {you.max:5.2f}")
 print(f"paper, its method {out.mean:8.2f} {out.max:5.2f} {inn.mean:12.2f} {inn.max:5.2f}")
 
 # %% [markdown]
+# Our head is nearly symmetric, and that favours the reflection (section 2).
+#
 # One slice of the hole, with the patch of each: light blue where it fills what is missing, pink where it leaves bone
 # missing, dark blue where no bone is missing.
 

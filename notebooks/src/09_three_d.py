@@ -66,8 +66,8 @@ diagrams.plate_map(bone, vault)
 
 # %% [markdown]
 # The same rings, spokes and numbers on the head and on its map. Rings are bent on the head and circles on the map,
-# and it is on the map that the plate is bent across the hole (light blue). The same map again, and that of the
-# thickness, both with the hole in white:
+# and it is on the map that the plate is bent across the hole (light blue). The map's axes are tilted a little against
+# the head's, so its letters hold roughly. The same map again, and that of the thickness, both with the hole in white:
 
 # %% tags=["nbval-check-output"]
 fig, panels = pictures.axes(2, height=3.8)
@@ -107,8 +107,8 @@ print(f"radius of the missing bone: {away.min():.0f} to {away.max():.0f} mm")
 # A map of *constant* radius is a sphere about the eye. So "flat" on this map is not flat in space: a method that can do
 # no better than flat starts from a sphere. (The flat fill of lesson 08 started from a plane.)
 #
-# And the hole reads larger on the map than it is: its bone lies nearer to the eye than the map's mm are made for, and
-# the map's hole takes in the slanted rim as well.
+# And the hole reads larger on the map than it is: its bone lies nearer to the eye than the map's mm are made for, an
+# arc is longer than the straight width below it, and the map's hole takes in the slanted rim as well.
 #
 # ## 2. Two orders of bending
 #
@@ -206,7 +206,8 @@ for which, term in terms.items():
 # order (a = 2 mm) is too *high*: it keeps the rim's slope as well, and a curve with the right height and slope at both
 # ends lies a little over a circle. The best lengths for one order alone, by trial, are 8.5 and 6 mm. Both together, at
 # 8.5 and 11 mm, have hardly any bias and a small spread: in their common system the second order pulls the middle down
-# by 0.44 mm and the third up by 0.42 mm, and the errors cancel.
+# by 0.44 mm and the third up by 0.42 mm, and the errors cancel. (Alone, the second order at 8.5 mm is 0.12 mm too
+# high: what one term does depends on the other.)
 #
 # These lengths were found with the truth at hand: they are the best for *this* bow, this gap, this noise, and no more.
 # The row of 1.3 and 1.8 mm is what section 3 will use, and it would do badly here: its spread is 0.84 mm. Why the best
@@ -326,8 +327,8 @@ for size in (15, 30, 50, 70, 100):
 # <details>
 # <summary>Answer</summary>
 #
-# The same bend over twice the width is four times less curved, and its energy per area sixteen times less: bending a
-# plate gets easier with the fourth power of its size, stretching the springs does not. With ours the bone has its way
+# The same bend over twice the width is four times less curved, and its energy per area sixteen times less (in the
+# third order less still): bending a plate gets easier with its size, stretching the springs does not. With ours the bone has its way
 # in holes of 15 and 30 mm, both are about even in one of 70 mm, and in one of 100 mm the prior decides (the plate even
 # swings a little past it). Next to the rim the plate is clamped to the bone in a hole of any size.
 #

@@ -100,8 +100,8 @@ for i, (side, rows) in enumerate(paper_tables.PAPER_BALLOONS.items()):
 #
 # In its first and last slices, where the gap is short. On a circle the angle follows from the gap (exercise 10.2): with
 # a radius of 80 mm an angle of 22 degrees means a gap of 60 mm, and 4 degrees one of 11 mm. Ours has it in the first
-# slices. In the last two it is hidden: there the hull takes over while the gap is still wide, and the cut is slanted
-# (see below).
+# slices, at both ends. In the last ones it does not get as far: there the hull takes over while the gap is still wide,
+# and the cut is slanted (see below).
 #
 # </details>
 #
@@ -203,7 +203,7 @@ print_row("printed: You", printed["You et al."])
 # No. Two causes are in the first four rows. **Skip:** ten points are 9 mm on our pixels, and 4.5 mm on theirs if
 # these are what lesson 03 takes them for; read the first row against the second. **k:** their -0.062 was chosen for
 # their opening, and a `k` fits one width of gap (lesson 04); read the first row against the third. Each alone brings
-# the mean down, and both together, the fourth row, come nearest. Outside the constant weighs more, inside both weigh
+# the mean down, and both together, the fourth row, most. Outside the constant weighs more, inside both weigh
 # about the same. With both mended the outer mean is below the paper's; the inner one is not. The default's shorter
 # `skip` and the fans bring the rest. The idea was good; the numbers were local.
 #
@@ -290,8 +290,9 @@ for wide_mm, high_mm in ((0.45, 0.45), (0.9, 2.5), (0.45, 2.5)):
 # 0.51 of its largest distance: same method, same flaw, while 3.09 itself only says how high the authors' cap was.
 #
 # Voxels are no cubes, and their shape changes what "nearest" means. The last three lines count the same two surfaces in
-# cubes, in our voxels, and in voxels such as the authors' may have been: 0.51 to 0.55, for the film stands upright. So
-# the paper's ratio is what such a fill gives; more cannot be read from two numbers.
+# cubes, in our voxels, and in voxels such as the authors' may have been: 0.51 to 0.55. They
+# differ little, as the film stands nearly upright and most of its distances lie within a slice, where pixels are
+# square. So the paper's ratio is what such a fill gives; more cannot be read from two numbers.
 #
 # </details>
 #
@@ -553,8 +554,8 @@ for name, (k, n) in snaxels.items():
 # %% [markdown]
 # ## A mistake to make once
 #
-# The text of the paper takes 135 and 147 for the *mean* number of steps; its tables list them as the largest. Computing
-# a mean settles such things:
+# The text of the paper takes 135 and 147 for the *mean* number of steps; its tables list them as the largest. Which
+# the authors meant, our steps cannot say; but one number cannot be both:
 
 # %% tags=["raises-exception"]
 steps = np.array([s["n_iter"] for s in paper.record["slices"] if s["status"] == "balloon"])

@@ -120,13 +120,16 @@ def test_an_endless_loop_is_named_from_any_thread(monkeypatch, thread):
         (lambda k, n: k.shape, "AttributeError"),
         (lambda k, n: asks(), "stopped with AsksError: no keyboard here"),
         (lambda k, n: recursive(k), "calls itself without end"),
+        (lambda k, n: np.ones(n) > 0 and k, "join masks by &"),
+        (lambda k, n: np.ones((2, 4)) @ np.ones(3), "`@` met 4 columns left and 3 rows"),
+        (lambda k, n: (k, n).ravel(), "take them apart"),
         (lambda k, n: None if n > 30 else 1.0, "nothing for some of the cases"),
         (lambda k, n: np.sqrt(-1.0 * n), "not a finite number"),
         (lambda k, n: exec("raise SystemExit"), "SystemExit"),
         (lambda k, n: [[1.0], [1.0, 2.0]], "right form"),
         (lambda k, n: np.ones(n), "One number is wanted"),
     ],
-    ids=["attribute", "asks", "recursion", "some", "root", "exit", "ragged", "many"],
+    ids=["attribute", "asks", "recursion", "and", "product", "tuple", "some", "root", "exit", "ragged", "many"],
 )
 def test_says_what_the_function_did(answer, said):
     assert said in check.exercise("4.1", answer).message

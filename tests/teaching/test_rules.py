@@ -27,6 +27,7 @@ def said(right, wrong, cases):
         (lambda k, n: k / n, "goes with 1 / n^2."),
         (lambda k, n: 3 * k * n, "is 3 times"),
         (lambda k, n: np.degrees(k * n), "57.3 times"),
+        (lambda k, n: round(k * n / 30) * 30, ""),
         (lambda k, n: 8, "does not use `k` and `n`"),
         (lambda k, n: sum(1 for _ in range(n)) + 5, "does not use `k`:"),
         (lambda *both: 8, ""),
@@ -75,3 +76,14 @@ def test_a_function_that_is_not_written_in_python_says_nothing_of_its_arguments(
 @pytest.mark.parametrize("found", [None, "text", [[1], [1, 2]], {}, np.zeros(0), np.array(["a"]), 1j])
 def test_what_is_no_number_has_no_rule(found):
     assert rule_for(Trial(max, NUMBERS, [1.0, 2.0, 3.0], [found] * 3)) == ""
+
+
+@pytest.mark.parametrize("digits", [0, 1, 3])
+def test_rounded_numbers_are_named_where_they_differ(digits):
+    def root(k, n):
+        return np.sqrt(k * n)
+
+    assert "rounded" in said(root, lambda k, n: np.round(root(k, n), digits), NUMBERS)
+    assert "rounded" not in said(root, lambda k, n: np.round(root(k, n), digits) + 0.5, NUMBERS)
+    # 2 is what the root of each rounds to, and also what stands for anything
+    assert "rounded" not in said(root, lambda k, n: 2.0, [(2.0, 2), (2.5, 2)])

@@ -18,6 +18,12 @@ def _wrapped(hu, centre, width):
     return np.trunc((hu - (centre - width / 2)) / width * 255) % 256
 
 
+def _stretched(hu, centre, width):
+    """Clipped to the window, then scaled by the ends of what is there."""
+    cut = np.clip(hu, centre - width / 2, centre + width / 2)
+    return (cut - cut.min()) / np.ptp(cut) * 255
+
+
 def _grey_error(answer, right):
     """Largest difference in grey levels; black and white can be met exactly, and count a little more."""
     grey = np.asarray(answer, float)
@@ -112,6 +118,19 @@ EXERCISES: dict[str, Exercise] = {
                 "The window is width wide, from low to high: divide by width, not by width / 2.",
             ),
             (lambda h, c, w: np.clip(h, c - w / 2, c + w / 2), "These are still HU, clipped; scale them to 0 to 255."),
+            (
+                lambda h, c, w: np.clip(h - c + w / 2, 0, 255),
+                "Divide by width: at the high end the window has come to 255.",
+            ),
+            (_stretched, "This stretches what the slice holds of the window: take its ends from centre and width."),
+            (
+                lambda h, c, w: np.clip(h - (c - w / 2) / w, 0, 1) * 255,
+                "`/` goes before `-`: put hu - low in brackets.",
+            ),
+            (
+                lambda h, c, w: np.clip((h - (c - w) / 2) / w, 0, 1) * 255,
+                "`-` in brackets goes before `/`: the window starts at centre - width / 2, not (centre - width) / 2.",
+            ),
             (
                 lambda h, c, w: (h - h.min()) / np.ptp(h) * 255,
                 "This stretches the whole range of the slice; the window is chosen by centre and width.",
@@ -249,6 +268,13 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p, n: np.median(abs(np.diff(np.sort(p, axis=0) @ n))),
                 "This sorts x, y and z each by itself, and takes positions apart: sort the heights.",
+            ),
+            *(
+                (
+                    lambda p, n, again=again: np.median(np.diff(again(np.sort(p) @ n))),
+                    "This sorts x, y and z of a position among themselves: sort the heights, positions @ normal.",
+                )
+                for again in (np.positive, np.sort)
             ),
             (
                 lambda p, n: np.median(np.linalg.norm(np.diff(p[np.argsort(p @ n)], axis=0), axis=1)),

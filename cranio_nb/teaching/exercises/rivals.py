@@ -48,6 +48,11 @@ def _with_point(point, sentence):
     return tuple(((lambda a, b, way=way: (way(a, b)[0], point(a, b))), sentence) for way in (_plane, _first))
 
 
+def _either_way(way, sentence):
+    """A wrong answer made of a - b, and the same one made of b - a."""
+    return (way, sentence), (lambda a, b: way(b, a), sentence)
+
+
 def _plane_error(answer, right):
     """How far the mirror images of a few points lie apart, mm."""
     points = np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 50.0, 0.0], [0.0, 0.0, 50.0]])
@@ -131,15 +136,19 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, b: (np.array([1.0, 0.0, 0.0]), (a + b).mean(axis=0) / 2),
                 "This takes x for the normal; the head leans: the normal runs from one point of a pair to the other.",
             ),
-            (lambda a, b: _plane(a, b)[::-1], "Turned round: the normal comes first, then the point."),
+            *_either_way(lambda a, b: _plane(a, b)[::-1], "Turned round: the normal comes first, then the point."),
             (lambda a, b: _plane(a, b)[0], "The point is missing: return the normal and a point."),
             (
                 lambda a, b: (_unit((a + b).mean(axis=0)), _plane(a, b)[1]),
                 "The normal runs from a point to its partner: the difference of the two, not their sum.",
             ),
-            (
+            *_either_way(
                 lambda a, b: (_plane(a, b)[0], (a - b).mean(axis=0) / 2),
                 "The point is half of the way across, not the place half-way: (a + b) / 2.",
+            ),
+            (
+                lambda a, b: (np.linalg.svd(a - b - (a - b).mean(axis=0))[2][0], _plane(a, b)[1]),
+                "The mean was taken off the differences, and it is what points across: leave it in.",
             ),
             (
                 lambda a, b: (_unit(np.cross(a[0], b[0])), _plane(a, b)[1]),

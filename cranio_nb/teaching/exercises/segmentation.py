@@ -45,17 +45,35 @@ def _second_largest(mask):
     return labels == np.bincount(labels.ravel())[1:].argsort()[-2] + 1
 
 
+def _largest_of_all(mask, *, place=-1):
+    """The background is counted as well."""
+    labels, _ = ndimage.label(mask)
+    return labels == np.bincount(labels.ravel()).argsort()[place]
+
+
+def _smallest(mask):
+    labels, _ = ndimage.label(mask)
+    return labels == np.bincount(labels.ravel())[1:].argmin() + 1
+
+
+def _widest(mask):
+    """The part with the largest box."""
+    labels, _ = ndimage.label(mask)
+    boxes = [np.prod([side.stop - side.start for side in box]) for box in ndimage.find_objects(labels)]
+    return labels == np.argmax(boxes) + 1
+
+
 def _parts():
     bone = small_head().bone[8:24]  # enough to see which part is large
     couch = bone.copy()
     couch[2:12, 120:123, 20:40] = True
     early = bone.copy()
     early[0:1, 1:5, 1:5] = True
-    blocks = np.zeros((6, 20, 20), bool)
-    blocks[1:5, 2:8, 2:8] = blocks[1:5, 8:12, 8:12] = True  # they share an edge only
-    blocks[2:4, 4:6, 4:6] = False  # a cavity in the largest: it stays empty
-    blocks[0, 0:2, 15:18] = True  # met first, alone in its slice
-    blocks[5, 15:18, 15:18] = True  # met last, alone in its slice
+    blocks = np.zeros((9, 20, 18), bool)
+    blocks[2:8, :, :14] = True  # more than the background
+    blocks[4:6, 4:6, 4:6] = False  # a cavity in the largest: it stays empty
+    blocks[0, 0, :] = blocks[0, :, 17] = blocks[:7, 19, 17] = True  # thin, in a larger box; alone in its slice
+    blocks[8, 5:10, 14:16] = True  # shares an edge only with the largest; alone in its slice
     return [(couch,), (early,), (blocks,)]
 
 
@@ -133,9 +151,9 @@ EXERCISES: dict[str, Exercise] = {
         answer=Answer("a bool mask like the one given", unit="voxels", tolerance=0.0, error=different_bools),
         mistakes=(
             (lambda m: ndimage.label(m)[0] == 1, "Label 1 is the part that is met first, not the largest."),
-            (
-                lambda m: ndimage.label(m)[0] == np.bincount(ndimage.label(m)[0].ravel()).argmax(),
-                "This is the background, label 0: leave it out of the count.",
+            *(
+                (way, "This is the background, label 0: leave it out of the count.")
+                for way in (np.logical_not, _largest_of_all)
             ),
             (_largest_but_last, "The last part was not counted: the numbers of the parts run to n, range(1, n + 1)."),
             (
@@ -170,6 +188,12 @@ EXERCISES: dict[str, Exercise] = {
                 "This is the number of the largest part; return the mask of it.",
             ),
             (_second_largest, "This is the second largest part."),
+            (
+                partial(_largest_of_all, place=-2),
+                "Label 0, the background, need not be the largest count: set its count to 0, then argmax.",
+            ),
+            (_smallest, "This is the smallest part: argmax of the counts, not argmin."),
+            (_widest, "This is the part with the largest box: count its voxels."),
             (
                 lambda m: ndimage.binary_opening(m, iterations=2),
                 "Opening eats thin bone; label the parts and choose one.",

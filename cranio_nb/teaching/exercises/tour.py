@@ -43,7 +43,13 @@ EXERCISES: dict[str, Exercise] = {
             (lambda m, s: np.prod(s) / 1000, "This is the volume of one voxel: how many are there?"),
             (lambda m, s: len(m) * np.prod(s) / 1000, "len counts the planes; mask.sum() counts the voxels."),
             (lambda m, s: m.sum() * np.mean(s) ** 3 / 1000, _CUBES),
-            (lambda m, s: m.sum() / np.prod(s), "Divided where it should multiply: voxels times mm3 per voxel."),
+            *(
+                (
+                    lambda m, s, to=to: m.sum() / np.prod(s) / to,
+                    "Divided where it should multiply: voxels times mm3 per voxel.",
+                )
+                for to in (1, 1000)
+            ),
             (
                 lambda m, s: int(m.sum() * np.prod(s) / 1000),
                 "The number was cut to a whole one: a hundredth of a cm3 counts here.",
@@ -108,10 +114,6 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda a, b: 2 * (a & b).sum() // (a.sum() + b.sum()),
                 "`//` cuts to a whole number: divide by `/`.",
-            ),
-            (
-                lambda a, b: round(2 * (a & b).sum() / (a.sum() + b.sum()), 2),
-                "The number was rounded: return it as it is.",
             ),
             *(
                 (

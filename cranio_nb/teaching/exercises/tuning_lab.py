@@ -88,16 +88,29 @@ def _held_out(scores):
     return _all_held_out(scores).mean()
 
 
+_OTHER_SPREADS = (
+    (lambda s, u: _rows(s)[1], "The spread of the scores holds how heads differ: take that of the differences."),
+    (lambda s, u: _gains(s, u).std(axis=0), "Divide by one head less, ddof=1: the mean is from the same few heads."),
+    (lambda s, u: _paired(s, u)[1] ** 2, "This is the variance; the spread is its root, std."),
+    (lambda s, u: _paired(s, u)[1] / np.sqrt(len(s)), "This is the error of the mean: leave out the root of heads."),
+    (lambda s, u: np.ptp(_gains(s, u), axis=0), "This is the range; the standard deviation is wanted."),
+    (lambda s, u: _rows(s)[1] - _rows(s)[1][u], "The difference of two spreads; take the spread of differences."),
+    (lambda s, u: np.hypot(_rows(s)[1], _rows(s)[1][u]), "Two spreads added as if apart: take the differences'."),
+)
+"""What is taken for the spread of the gains, and what to say of it."""
+
+
 EXERCISES: dict[str, Exercise] = {
     "11.1": Exercise(
         cases=_tables,
         right=_paired,
         answer=Answer("two rows, mean and spread, with a column for each setting", unit="", tolerance=1e-9),
         mistakes=(
-            (
-                lambda s, u: np.array([_gains(s, u).mean(axis=0), s.std(axis=0, ddof=1)]),
-                "The spread is that of the scores, so it holds how heads differ: take that of the differences.",
+            *(
+                (lambda s, u, spread=spread: np.array([_gains(s, u).mean(axis=0), spread(s, u)]), sentence)
+                for spread, sentence in _OTHER_SPREADS
             ),
+            (lambda s, u: _rows(s / s[:, [u]] - 1), "These are relative gains: take the usual score off, no division."),
             (
                 lambda s, u: _rows(s),
                 "These are the scores themselves: take off, head by head, that of the usual setting.",
@@ -105,10 +118,6 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda s, u: np.array([s.mean(axis=0), _gains(s, u).std(axis=0, ddof=1)]),
                 "The mean is that of the scores: take that of the differences.",
-            ),
-            (
-                lambda s, u: np.array([_gains(s, u).mean(axis=0), _gains(s, u).std(axis=0)]),
-                "Divide by one head less, ddof=1: the mean was taken from the same few heads.",
             ),
             (
                 lambda s, u: np.array([-1, 1])[:, None] * _paired(s, u),
@@ -119,14 +128,6 @@ EXERCISES: dict[str, Exercise] = {
                 "Without their signs losses count as gains: no np.abs.",
             ),
             (lambda s, u: _paired(s, 0), "Always against the first setting: the usual one is the column `usual`."),
-            (
-                lambda s, u: np.array([_gains(s, u).mean(axis=0), _gains(s, u).var(axis=0, ddof=1)]),
-                "This is the variance; the spread is its root, std.",
-            ),
-            (
-                lambda s, u: np.array([_gains(s, u).mean(axis=0), _gains(s, u).std(axis=0, ddof=1) / np.sqrt(len(s))]),
-                "This is the error of the mean; the spread over heads is not divided by the root of their number.",
-            ),
             (
                 lambda s, u: np.array([np.median(_gains(s, u), axis=0), _gains(s, u).std(axis=0, ddof=1)]),
                 "This is the median of the differences; their mean is wanted.",
@@ -143,15 +144,6 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, u: _rows(s - _of_rows(s)),
                 "Differences from each head's mean: take off the score of the usual setting.",
             ),
-            (
-                lambda s, u: np.array([_gains(s, u).mean(axis=0), np.ptp(_gains(s, u), axis=0)]),
-                "This is the range; the standard deviation is wanted.",
-            ),
-            (
-                lambda s, u: np.array([_gains(s, u).mean(axis=0), s.std(0, ddof=1) - s.std(0, ddof=1)[u]]),
-                "This is the difference of two spreads; wanted is the spread of the differences.",
-            ),
-            (lambda s, u: _rows(s / s[:, [u]] - 1), "These are parts of the usual score: take it off, do not divide."),
             (lambda s, u: _gains(s, u).mean(axis=0), "Only the mean: return mean and spread, two rows."),
             (lambda s, u: _paired(s, u)[::-1], "The mean comes first, then the spread."),
             (lambda s, u: _paired(s, u).T, "A row for the mean and one for the spread: yours are columns."),
@@ -197,6 +189,10 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda d, r, n, w: w / r,
                 "This is the pull per mm squared; per index squared it is the step squared times that.",
+            ),
+            *(
+                (lambda d, r, n, w, h=h: 8 * w * h(d, r) / (n - 1) ** 2, "8 rise / N^2 is k for a shallow bow only.")
+                for h in (lambda d, r: r - np.sqrt(r**2 - d**2 / 4), lambda d, r: r - r * np.cos(d / 2 / r))
             ),
             (
                 lambda d, r, n, w: w * d**2 / (8 * r),
@@ -321,7 +317,10 @@ EXERCISES: dict[str, Exercise] = {
             (lambda s: _all_held_out(s).sum(), "This is a sum; divide it by the number of heads."),
             (_all_held_out, "One score for each head left out, and right: return their mean."),
             (lambda s: _others(s).argmax(axis=1), "These are the settings chosen: return how they did."),
-            (lambda s: s[0, _others(s)[0].argmax()], "Only the first head is left out: each has its turn."),
+            *(
+                (lambda s, i=i: s[i, _others(s)[i].argmax()], f"Only the {word} head is left out: each has its turn.")
+                for i, word in ((0, "first"), (-1, "last"))
+            ),
             (
                 lambda s: s[:, _others(s).argmax(axis=1)].mean(),
                 "scores[:, best] takes every head with every choice: each head goes with its own, one pair a head.",

@@ -34,6 +34,13 @@ WRONG = {
         ("return np.clip((hu - centre + width / 2) / width, 0, 1) * 254", "0.9961 times the right"),
         ("return np.clip((hu - centre + width / 2) // width, 0, 1) * 255", "`//` cuts"),
         ("return np.round(np.clip((hu - centre + width / 2) / width, 0, 1)) * 255", "black and white only"),
+        (
+            "c = np.clip(hu, centre - width / 2, centre + width / 2); return (c - c.min()) / np.ptp(c) * 255",
+            "stretches",
+        ),
+        ("low = centre - width / 2; return np.clip(hu - low / width, 0, 1) * 255", "in brackets"),
+        ("low = (centre - width) / 2; return np.clip((hu - low) / width, 0, 1) * 255", "not (centre - width) / 2"),
+        ("return np.clip(hu - (centre - width / 2), 0, 255)", "Divide by width"),
     ],
     "1.2": [
         ("return affine[:3, :3].dot(index)", "origin"),
@@ -59,7 +66,8 @@ WRONG = {
         ("return affine[:3,:3] @ index - affine[:3,3]", "The origin is added"),
         ("return affine[:3,:3] @ (index + 0.5) + affine[:3,3]", "Half a voxel off"),
         ("return index + affine[:3,3]", "These are still voxels"),
-        ("return affine @ index", "stopped with ValueError"),
+        ("return affine @ index", "4 columns left and 3 rows"),
+        ("return (affine[:3,:3] @ index + affine[:3,3]).round()", "rounded"),
         ("return affine[:3,:3] @ index * affine[:3,3]", "not multiplied"),
         ("return np.diag(affine)[:3] * index + affine[:3,3]", "Spacings alone"),
     ],
@@ -98,6 +106,8 @@ WRONG = {
         ("return np.median(np.diff(np.sort(positions * normal, axis=0)))", "`*` multiplies"),
         ("return np.median(np.diff(np.sort(positions * normal, axis=0), axis=0))", None),
         ("return np.median(np.diff(np.sort(positions @ normal))) / 2", "0.5 times the right"),
+        ("return np.median(np.diff(np.sort(positions) @ normal))", "among themselves"),
+        ("return round(np.median(np.diff(np.sort(positions @ normal))), 1)", "rounded"),
         ("return np.median(np.diff(np.sort(positions[:, 0])))", "The function does not use `normal`"),
     ],
 }

@@ -17,6 +17,12 @@ WRONG = {
         ),
         ("n = (a - b).mean(axis=0); n /= np.linalg.norm(n); return n", "The point is missing"),
         ("n = (a - b).mean(axis=0); n /= np.linalg.norm(n); return (a + b).mean(axis=0) / 2, n", "Turned round"),
+        ("n = (b - a).mean(axis=0); n /= np.linalg.norm(n); return (a + b).mean(axis=0) / 2, n", "Turned round"),
+        ("n = (b - a).mean(axis=0); return n / np.linalg.norm(n), n / 2", "half of the way across"),
+        (
+            "d = b - a; return np.linalg.svd(d - d.mean(axis=0))[2][0], (a + b).mean(axis=0) / 2",
+            "The mean was taken off the differences",
+        ),
         (
             "n = (a + b).mean(axis=0); n /= np.linalg.norm(n); return n, (a + b).mean(axis=0) / 2",
             "The normal runs from a point to its partner",

@@ -92,6 +92,17 @@ WRONG = {
         (f"{LABELS}; return ndimage.binary_fill_holes(l == s.argmax())", "filling was not asked for"),
         (f"{LABELS}; return s == s.argmax()", None),
         (
+            "l, n = ndimage.label(mask); s = np.bincount(l.ravel()); return l == np.argsort(s)[-2]",
+            "need not be the largest count",
+        ),
+        ("l, n = ndimage.label(mask); s = np.bincount(l.ravel()); return l == 1 + s[1:].argmin()", "smallest part"),
+        (
+            "l, n = ndimage.label(mask); boxes = ndimage.find_objects(l); "
+            "return l == 1 + np.argmax([np.prod([s.stop - s.start for s in box]) for box in boxes])",
+            "largest box",
+        ),
+        ("l = ndimage.label(mask); s = np.bincount(l.ravel()); s[0] = 0; return l == s.argmax()", "take them apart"),
+        (
             "l, n = ndimage.label(mask); s = ndimage.sum(mask, l, range(1, n + 1)); return l == s.argmax()",
             "add 1",
         ),

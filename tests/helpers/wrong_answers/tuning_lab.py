@@ -37,7 +37,6 @@ WRONG = {
         (f"{GAIN}; return gain.mean(axis=0)", "Only the mean"),
         (f"{GAIN}; return np.array([gain.std(axis=0, ddof=1), gain.mean(axis=0)])", "The mean comes first"),
         (f"{GAIN}; return np.column_stack([gain.mean(axis=0), gain.std(axis=0, ddof=1)])", "yours are columns"),
-        ("return np.array([(g := scores / scores[:, [usual]] - 1).mean(0), g.std(0, ddof=1)])", "do not divide"),
         (f"{GAIN}; return gain", None),
         (
             "gain = scores - scores[:, usual]; return np.array([gain.mean(axis=0), gain.std(axis=0)])",
@@ -49,7 +48,15 @@ WRONG = {
         ),
         (
             f"{GAIN}; d = scores.std(axis=0, ddof=1); return np.array([gain.mean(axis=0), d - d[usual]])",
-            "difference of two spreads",
+            "The difference of two spreads",
+        ),
+        (
+            f"{GAIN}; d = scores.std(axis=0, ddof=1); return np.array([gain.mean(axis=0), np.hypot(d, d[usual])])",
+            "as if apart",
+        ),
+        (
+            "gain = scores / scores[:, [usual]] - 1; return np.array([gain.mean(axis=0), gain.std(axis=0, ddof=1)])",
+            "relative gains",
         ),
     ],
     "11.2": [
@@ -68,6 +75,14 @@ WRONG = {
         ("return tension * (length / (n - 1)) ** 2", "The radius is not used"),
         ("return tension / radius", "per index squared it is"),
         ("return tension * length**2 / (8 * radius)", "the height of the bow"),
+        (
+            "rise = radius - np.sqrt(radius**2 - length**2 / 4); return 8 * tension * rise / (n - 1) ** 2",
+            "shallow bow only",
+        ),
+        (
+            "rise = radius * (1 - np.cos(length / 2 / radius)); return 8 * tension * rise / (n - 1) ** 2",
+            "shallow bow only",
+        ),
         ("return -tension * (length / (n - 1)) ** 2 / radius", "Outward is positive"),
         ("return 2 * tension * (length / (n - 1)) ** 2 / radius", "2 times the right"),
         ("return tension * length**2 / (n - 1) / radius", "goes with (n - 1)"),
@@ -139,6 +154,7 @@ WRONG = {
             "the settings chosen",
         ),
         ("return scores[0, np.delete(scores, 0, axis=0).mean(axis=0).argmax()]", "Only the first head"),
+        ("return scores[-1, np.delete(scores, -1, axis=0).mean(axis=0).argmax()]", "Only the last head"),
         (
             "return np.mean([scores[i, np.delete(scores, i, 0).max(axis=0).argmax()] for i in range(len(scores))])",
             "by the single best score",
