@@ -7,6 +7,7 @@ it shows every picture where no kernel runs; the same text gives the same file, 
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,6 +23,8 @@ from ..output.staging import replace_file
 from .lesson_text import METADATA, cell_ids, read_lesson, tags
 from .student_copy import exercise_copy
 
+_DRAWN = re.compile(r"data:image/png;base64,[A-Za-z0-9+/=]+")
+"""A picture within a text: what an exercise is expected to draw."""
 QUIET = {"CRANIO_NB_MODE": "static", "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "TQDM_DISABLE": "1"}
 """Environment of a kernel that runs lessons: pictures instead of panels, one thread, no progress bars."""
 _TIMEOUT = 300  # s for one cell
@@ -174,5 +177,7 @@ def _comparable(notebook: NotebookNode) -> list[Any]:
             data = output.get("data", {})
             alts = {kind: output.metadata[kind].get("alt") for kind in data if kind in output.get("metadata", {})}
             written.append((output.output_type, output.get("text"), output.get("ename"), data.get("text/plain"), alts))
-        found.append((cell.id, cell.cell_type, cell.source, tags(cell), cell.get("execution_count"), written))
+        source = _DRAWN.sub("", cell.source)
+        name = cell.id if source == cell.source else ""  # it follows from the text, and so from a picture in it
+        found.append((name, cell.cell_type, source, tags(cell), cell.get("execution_count"), written))
     return found

@@ -67,6 +67,14 @@ def pictures(notebook):
     return [output for output in outputs if any(kind.startswith("image/") for kind in output.get("data", {}))]
 
 
+def draw_otherwise(path):
+    """Change the expected picture, and the id that follows from it, as another machine may."""
+    copy = nbformat.read(path, as_version=4)
+    (cell,) = [cell for cell in copy.cells if "Expected picture" in cell.source]
+    cell.source, cell.id = re.sub("base64,[^)]*", "base64,AAAA", cell.source), "otherwise"
+    nbformat.write(copy, path)
+
+
 class TestShippedLessons:
     def test_are_all_there(self):
         assert {path.stem for path in FOLDER.glob("*.ipynb")} == set(NAMES)
@@ -154,7 +162,9 @@ class TestCommand:
         assert len(made) == 2
         assert runner.invoke(main, build).exit_code == 0
         assert {path: path.read_bytes() for path in small.rglob("*.ipynb")} == made
+        draw_otherwise(small / "exercises" / "90_small.ipynb")
         assert runner.invoke(main, [*build, "--check"]).exit_code == 0
+        made = {path: path.read_bytes() for path in small.rglob("*.ipynb")}
         (small / "src" / "90_small.py").write_text(SMALL.replace("arange(3)", "arange(4)"))
         assert runner.invoke(main, [*build, "--check"]).exit_code == 1
         assert {path: path.read_bytes() for path in small.rglob("*.ipynb")} == made
