@@ -95,6 +95,7 @@ _OTHER_SPREADS = (
     (lambda s, u: _paired(s, u)[1] / np.sqrt(len(s)), "This is the error of the mean: leave out the root of heads."),
     (lambda s, u: np.ptp(_gains(s, u), axis=0), "This is the range; the standard deviation is wanted."),
     (lambda s, u: _rows(s)[1] - _rows(s)[1][u], "The difference of two spreads; take the spread of differences."),
+    (lambda s, u: 0 * s[0] + _gains(s, u).std(ddof=1), "One spread over all settings: take axis=0."),
     (lambda s, u: np.hypot(_rows(s)[1], _rows(s)[1][u]), "Two spreads added as if apart: take the differences'."),
 )
 """What is taken for the spread of the gains, and what to say of it."""
@@ -144,6 +145,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, u: _rows(s - _of_rows(s)),
                 "Differences from each head's mean: take off the score of the usual setting.",
             ),
+            (lambda s, u: np.array([len(s), 1])[:, None] * _paired(s, u), "These are sums of gains, not means."),
             (lambda s, u: _gains(s, u).mean(axis=0), "Only the mean: return mean and spread, two rows."),
             (lambda s, u: _paired(s, u)[::-1], "The mean comes first, then the spread."),
             (lambda s, u: _paired(s, u).T, "A row for the mean and one for the spread: yours are columns."),
@@ -169,6 +171,7 @@ EXERCISES: dict[str, Exercise] = {
                 (lambda d, r, n, w, k=k: w * (d / (n + k)) ** 2 / r, "n snaxels have n - 1 steps between them.")
                 for k in (-2, 0, 1)
             ),
+            (lambda d, r, n, w: w * (d / (n - 1)) ** 4 / r**3, "This is the rigidity's part: the tension's is wanted."),
             (lambda d, r, n, w: w * (d / n - 1) ** 2 / r, "length / n - 1 divides first: put n - 1 in brackets."),
             (lambda d, r, n, w: w * d / (n - 1) / r, "The step comes in squared: k is a length per index *squared*."),
             (

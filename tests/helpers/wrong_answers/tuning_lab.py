@@ -37,6 +37,8 @@ WRONG = {
         (f"{GAIN}; return gain.mean(axis=0)", "Only the mean"),
         (f"{GAIN}; return np.array([gain.std(axis=0, ddof=1), gain.mean(axis=0)])", "The mean comes first"),
         (f"{GAIN}; return np.column_stack([gain.mean(axis=0), gain.std(axis=0, ddof=1)])", "yours are columns"),
+        (f"{GAIN}; return np.array([gain.sum(axis=0), gain.std(axis=0, ddof=1)])", "sums of gains"),
+        (f"{GAIN}; return np.array([gain.mean(axis=0), [gain.std(ddof=1)] * gain.shape[1]])", "One spread over all"),
         (f"{GAIN}; return gain", None),
         (
             "gain = scores - scores[:, usual]; return np.array([gain.mean(axis=0), gain.std(axis=0)])",
@@ -65,6 +67,7 @@ WRONG = {
         ("return tension * (length / n) ** 2 / radius", "n - 1 steps"),
         ("return tension * (length / (n + 1)) ** 2 / radius", "n - 1 steps"),
         ("return tension * (length / (n - 2)) ** 2 / radius", "n - 1 steps"),
+        ("return tension * (length / (n - 1)) ** 4 / radius**3", "the rigidity's part"),
         ("return tension * (length / n - 1) ** 2 / radius", "put n - 1 in brackets"),
         ("return tension * length / (n - 1) / radius", "squared"),
         ("return tension * (length / (n - 1)) ** 2 * radius", "Multiplied by the radius"),
