@@ -387,6 +387,8 @@ for i, side in enumerate(("outer", "inner")):
         print(side, "start {:.1f} mm off, balloon {:.1f} mm".format(*np.mean(off, axis=0)))
 
 # %% [markdown]
+# Outside it does; inside the two are nearly alike.
+#
 # And why "steps 1, 1" for the default? Its start is a spiral that follows from both ends, with the pressure that
 # holds just this spiral. So the balloon starts at rest, and stops after one look.
 #

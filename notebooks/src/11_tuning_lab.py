@@ -117,7 +117,8 @@ _ = panel.set(**start)
 # Each setting on each head, by Dice (more is better) and by the mean distance of the two surfaces (less is better). In
 # the picture a line is the mean of the three heads, and the grey band one standard deviation to each side. `auto` is
 # the `k` that follows from the ends; it differs from slice to slice, so it has no place among the others and comes
-# first. (0.248 is 4 x 0.062, the paper's figure for N = 40.)
+# first; the line from it to 0 says nothing. (0.248 is 4 x 0.062, the paper's figure, here in mm and meant for N = 40 as
+# under the sliders of lesson 10.)
 
 # %%
 sweeps = {
@@ -211,9 +212,10 @@ print(f"correlation of both: {np.corrcoef(means, there)[0, 1]:.2f}")
 # and reach are what the tangents are made of (lesson 03): too short costs 0.090 and 0.070, too long only 0.027 and
 # 0.005. Too low a threshold costs 0.046. The distances say the same in mm.
 #
-# Heads differ less than most of these here, from 0.936 to 0.942. Still, three are few: a change of less than three times its
-# error says nothing. That goes for a skip of 8 mm (2.2 times), for a threshold of 700 HU (2.7 times), for a reach of 25
-# mm and for `k` at 0.08. Whoever wants to know needs more heads (section 5), and better ones with real rims.
+# The three heads are alike here, from 0.936 to 0.942 with the default. Still, three are few: a change of less than
+# three times its error says nothing. That goes for a skip of 8 mm (2.2 times), for a threshold of 700 HU (2.7 times),
+# for a reach of 25 mm and for `k` at 0.08. Whoever wants to know needs more heads (section 5), and better ones with
+# real rims.
 #
 # The finer head of the last column agrees: 11 of 12 settings lie on the same side of the default, and the correlation
 # is 0.97. The odd one out is `k` at 0.08: as good as the automatic one here, and clearly worse there.
@@ -503,8 +505,8 @@ pictures.scene(
 # %% [markdown]
 # Three numbers for "how far off", and they differ much: 0.37 mm on average, 1.75 mm by HD95, 2.77 mm at most. The
 # largest belongs to one node in one of the two places at the rim that the colours show. HD95 is counted from voxel to
-# voxel, so it goes in steps of them, and both methods share it. To tune by, take what moves smoothly, the
-# mean or Dice; and look at the map before you believe any of them.
+# voxel, so it goes in steps of them: both methods have the same. To tune by, take what moves smoothly, the mean or
+# Dice; and look at the map before you believe any of them.
 #
 # ## A mistake to make once
 #

@@ -54,8 +54,12 @@ def _clouds():
     return clouds
 
 
+def _parts(points):
+    return np.linalg.svd(points - points.mean(axis=0))
+
+
 def _line(points):
-    return np.linalg.svd(points - points.mean(axis=0))[2][0]
+    return _parts(points)[2][0]
 
 
 def _by_slope(points):
@@ -129,10 +133,6 @@ EXERCISES: dict[str, Exercise] = {
             (lambda b: ndimage.binary_closing(b) & ~b, "Closing fills bays, outside the bone: erode it instead."),
             (lambda b: ~ndimage.binary_erosion(b), "All the background is in it: keep what is bone and not inside."),
             (
-                lambda b: b ^ ndimage.binary_erosion(b) | ~b,
-                "All the background is in it: keep what is bone and not inside.",
-            ),
-            (
                 lambda b: ndimage.binary_dilation(b) & b,
                 "A dilation grows: bone and its dilation is the bone itself. Which pixels does an erosion take away?",
             ),
@@ -181,7 +181,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p: np.linalg.svd(p)[2][0],
                 "The points are not centred: this looks from 0, 0 to them. Subtract the mean.",
             ),
-            (lambda p: np.linalg.svd(p - p.mean(axis=0))[2][1], "This is the normal, the direction of least spread."),
+            (lambda p: _parts(p)[2][1], "This is the normal, the direction of least spread."),
             (lambda p: _line(p)[::-1], "Row and column are swapped."),
             (
                 lambda p: p[1] - p[0],
@@ -225,18 +225,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p: np.linalg.svd(p - p.mean(axis=1, keepdims=True))[2][0],
                 "This centres each point by itself: the centre is the mean of all, axis=0.",
             ),
-            (
-                lambda p: np.linalg.svd(p - p.mean(axis=0))[2][:, 0],
-                "Directions are the rows of the third array, not its columns: [2][0].",
-            ),
-            (
-                lambda p: np.linalg.svd(p - p.mean(axis=0))[0][0],
-                "The first array has a row for each point; directions are the rows of the third.",
-            ),
-            (
-                lambda p: np.linalg.svd(p - p.mean(axis=0))[2],
-                "These are both directions; return the one of largest spread.",
-            ),
+            (lambda p: _parts(p)[2][:, 0], "Directions are the rows of the third array, not its columns: [2][0]."),
+            (lambda p: _parts(p)[0][0], "The first array has a row for each point; directions are rows of the third."),
+            (lambda p: _parts(p)[1], "The second array says how far the points spread; the third has the directions."),
+            (lambda p: _parts(p)[2], "These are both directions; return the one of largest spread."),
             (
                 lambda p: np.ptp(p, axis=0),
                 "Height and width of the cloud have no sign, and rest on its outermost points. Fit all points.",
@@ -292,6 +284,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p: np.append(_arc_length(p)[1:], _arc_length(p)[-1]),
                 "The 0 belongs in front, for the first point; the last length is there once.",
             ),
+            (lambda p: np.linspace(0, _arc_length(p)[-1], len(p)), "Not all steps are equally long: add up each one."),
             (lambda p: np.append(_arc_length(p)[1:], 0.0), "The 0 stands in front, for the first point."),
             (lambda p: np.append(_arc_length(p)[:-1], 0.0), "The last length is lost: one 0 is wanted, in front."),
             (
@@ -309,6 +302,13 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p: np.cumsum(np.linalg.norm(np.gradient(p, axis=0), axis=1)),
                 "np.gradient takes means of two steps; np.diff gives the steps.",
+            ),
+            *(
+                (
+                    lambda p, by=by: np.cumsum(np.linalg.norm(p - np.roll(p, by, axis=0), axis=1)),
+                    "np.roll adds the way from the last point back to the first.",
+                )
+                for by in (1, -1)
             ),
             *(
                 (way, "Which axis? Points stand below each other: np.diff along axis=0, the norm along axis=1.")

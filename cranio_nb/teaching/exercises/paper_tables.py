@@ -182,6 +182,11 @@ EXERCISES: dict[str, Exercise] = {
                 "np.radians goes from degrees to radians; the other way is np.degrees.",
             ),
             (lambda c, r: np.arctan(c / 2 / r), "A sine, not a tangent; and in degrees."),
+            (lambda c, r: np.arcsin(c / r), "Half the chord belongs to the right angle: chord / 2; and in degrees."),
+            (
+                lambda c, r: 2 * np.arcsin(c / 2 / r),
+                "This is the angle at the centre, and in radians: half, in degrees.",
+            ),
             (lambda c, r: c / 2 / r, "This is the sine of the angle: np.arcsin, in degrees."),
             (
                 lambda c, r: np.degrees(2 * np.arctan(c / 2 / r)),

@@ -95,6 +95,7 @@ _OTHER_SPREADS = (
     (lambda s, u: _paired(s, u)[1] / np.sqrt(len(s)), "This is the error of the mean: leave out the root of heads."),
     (lambda s, u: np.ptp(_gains(s, u), axis=0), "This is the range; the standard deviation is wanted."),
     (lambda s, u: _rows(s)[1] - _rows(s)[1][u], "The difference of two spreads; take the spread of differences."),
+    (lambda s, u: 0 * s[0] + _gains(s, u).std(ddof=1), "One spread over all settings: take axis=0."),
     (lambda s, u: np.hypot(_rows(s)[1], _rows(s)[1][u]), "Two spreads added as if apart: take the differences'."),
 )
 """What is taken for the spread of the gains, and what to say of it."""
@@ -144,6 +145,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda s, u: _rows(s - _of_rows(s)),
                 "Differences from each head's mean: take off the score of the usual setting.",
             ),
+            (lambda s, u: np.array([len(s), 1])[:, None] * _paired(s, u), "These are sums of gains, not means."),
             (lambda s, u: _gains(s, u).mean(axis=0), "Only the mean: return mean and spread, two rows."),
             (lambda s, u: _paired(s, u)[::-1], "The mean comes first, then the spread."),
             (lambda s, u: _paired(s, u).T, "A row for the mean and one for the spread: yours are columns."),
@@ -160,16 +162,17 @@ EXERCISES: dict[str, Exercise] = {
         right=_pressure,
         answer=Answer("one number", unit="mm per index squared", tolerance=1e-9),
         mistakes=(
-            (
-                lambda d, r, n, w: _pressure(d, r, n, 1.0),
-                "The tension is not used: twice of it needs twice the pressure.",
-            ),
+            (lambda d, r, n, w: _pressure(d, r, n, 1.0), "The tension is not used: twice of it, twice the pressure."),
             (
                 lambda d, r, n, w: _pressure(d, r, n, 1 / w),
                 "Divided by the tension: a stronger one needs more pressure, not less.",
             ),
-            (lambda d, r, n, w: w * (d / n) ** 2 / r, "n snaxels have n - 1 steps between them."),
-            (lambda d, r, n, w: w * (d / (n + 1)) ** 2 / r, "n snaxels have n - 1 steps between them."),
+            *(
+                (lambda d, r, n, w, k=k: w * (d / (n + k)) ** 2 / r, "n snaxels have n - 1 steps between them.")
+                for k in (-2, 0, 1)
+            ),
+            (lambda d, r, n, w: w * (d / (n - 1)) ** 4 / r**3, "This is the rigidity's part: the tension's is wanted."),
+            (lambda d, r, n, w: w * (d / n - 1) ** 2 / r, "length / n - 1 divides first: put n - 1 in brackets."),
             (lambda d, r, n, w: w * d / (n - 1) / r, "The step comes in squared: k is a length per index *squared*."),
             (
                 lambda d, r, n, w: w * (d / (n - 1)) ** 2 * r,
@@ -240,11 +243,8 @@ EXERCISES: dict[str, Exercise] = {
                 lambda t: t - _of_rows(t) - _of_columns(t),
                 "The mean of all was taken off twice, with the rows and with the columns: add it once.",
             ),
-            (lambda t: t - _of_rows(t), "Only the rows' means are taken off: the columns' parameter is still in it."),
-            (
-                lambda t: t - _of_columns(t),
-                "Only the columns' means are taken off: the rows' parameter is still in it.",
-            ),
+            (lambda t: t - _of_rows(t), "Only the rows' means are taken off: the columns' effect is still in it."),
+            (lambda t: t - _of_columns(t), "Only the columns' means are taken off: the rows' effect is still in it."),
             (
                 lambda t: t - t.mean(),
                 "These are differences from the mean of all; what each parameter does alone is still in them.",
@@ -336,6 +336,7 @@ EXERCISES: dict[str, Exercise] = {
                 (lambda s, way=way: _chosen_by(way, s), f"Chosen by the {word} of the others: choose by their mean.")
                 for way, word in ((np.median, "median"), (np.min, "worst case"), (np.max, "single best score"))
             ),
+            (lambda s: _on_left_out(s, s.argmin(axis=1)), "The others are heads: sum and mean go along axis=0."),
             (lambda s: _held_out(s.T), "Rows are heads and columns settings: heads are left out."),
         ),
         hints=(

@@ -52,6 +52,7 @@ WRONG = {
         ("d = points[-1] - points[0]; return d / np.linalg.norm(d)", "to the last"),
         ("return np.linalg.svd(points)[2][0]", "centred"),
         ("return np.linalg.svd(points - points.mean(0))[2][-1]", "normal"),
+        ("return np.linalg.svd(points - points.mean(0))[1]", "how far the points spread"),
         (
             (
                 "a = np.polyfit(points[:,0], points[:,1], 1, full=True); "
@@ -109,6 +110,9 @@ WRONG = {
             ("s = np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)); return np.concatenate([s, [s[-1]]])"),
             "The 0 belongs in front",
         ),
+        ("return np.cumsum(np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1))", "np.roll adds"),
+        ("return np.cumsum(np.linalg.norm(np.roll(points, -1, axis=0) - points, axis=1))", "np.roll adds"),
+        (f"{STEPS}; return np.linspace(0, s.sum(), len(points))", "Not all steps"),
         ("return np.cumsum(np.linalg.norm(points, axis=1))", "These are distances from 0"),
         ("return np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points), axis=1))])", "Which axis"),
         ("return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=0)))", "Which axis"),

@@ -98,5 +98,7 @@ WRONG = {
         ("return np.degrees(np.arcsin(radius / chord))", "There is NaN or infinity in the answer"),
         ("return np.degrees(np.arccos(1 - chord**2 / 2 / radius**2))", "This is the angle at the centre"),
         ("return chord / 2 / radius", "This is the sine of the angle"),
+        ("return np.arcsin(chord / radius)", "chord / 2; and in degrees"),
+        ("return 2 * np.arcsin(chord / 2 / radius)", "at the centre, and in radians"),
     ],
 }

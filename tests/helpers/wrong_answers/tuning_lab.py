@@ -37,6 +37,8 @@ WRONG = {
         (f"{GAIN}; return gain.mean(axis=0)", "Only the mean"),
         (f"{GAIN}; return np.array([gain.std(axis=0, ddof=1), gain.mean(axis=0)])", "The mean comes first"),
         (f"{GAIN}; return np.column_stack([gain.mean(axis=0), gain.std(axis=0, ddof=1)])", "yours are columns"),
+        (f"{GAIN}; return np.array([gain.sum(axis=0), gain.std(axis=0, ddof=1)])", "sums of gains"),
+        (f"{GAIN}; return np.array([gain.mean(axis=0), [gain.std(ddof=1)] * gain.shape[1]])", "One spread over all"),
         (f"{GAIN}; return gain", None),
         (
             "gain = scores - scores[:, usual]; return np.array([gain.mean(axis=0), gain.std(axis=0)])",
@@ -64,6 +66,9 @@ WRONG = {
         ("return (length / (n - 1)) ** 2 / radius / tension", "Divided by the tension"),
         ("return tension * (length / n) ** 2 / radius", "n - 1 steps"),
         ("return tension * (length / (n + 1)) ** 2 / radius", "n - 1 steps"),
+        ("return tension * (length / (n - 2)) ** 2 / radius", "n - 1 steps"),
+        ("return tension * (length / (n - 1)) ** 4 / radius**3", "the rigidity's part"),
+        ("return tension * (length / n - 1) ** 2 / radius", "put n - 1 in brackets"),
         ("return tension * length / (n - 1) / radius", "squared"),
         ("return tension * (length / (n - 1)) ** 2 * radius", "Multiplied by the radius"),
         ("return tension * (length / (n - 1)) ** 2 / radius**2", "not its square"),
@@ -157,6 +162,7 @@ WRONG = {
             "return np.mean([scores[i, np.delete(scores, i, 0).max(axis=0).argmax()] for i in range(len(scores))])",
             "by the single best score",
         ),
+        ("return scores[range(len(scores)), (scores.sum() - scores).argmax(axis=1)].mean()", "along axis=0"),
         (f"scores = scores.T; {EACH}; return np.mean(found)", "Rows are heads"),
         ("return scores[:, 1:].mean(axis=0).max()", None),
         (
