@@ -43,6 +43,7 @@ _CAUSES = {
     "the concatenation axis": "The arrays to join differ in shape. (Of what query of a tree gives, [0] are distances.)",
     "truth value of an array": "`and`, `or`, `not` and `if` want one value, not an array: join masks by &, | and ~.",
     r"size (\d+) is different from (\d+)": r"`@` met \2 columns left and \1 rows right of it: as many are wanted.",
+    "object too deep": "np.bincount wants a row of numbers: labels.ravel() makes one.",
     "'tuple'|tuple indices": "A tuple holds several values: take them apart, as in `labels, n = ...`.",
 }
 """Words of an error, as a pattern, and what is said instead of them."""

@@ -153,6 +153,8 @@ def _by_form(trial: Trial) -> str:
     pairs = _pairs(trial)
     if pairs and all(b.ndim == 0 < a.ndim for a, b in pairs):
         return "One number is wanted, and these are many: which step makes one of them (sum, mean, max)?"
+    if pairs and all(a.ndim == 0 < b.ndim and a.dtype == bool for a, b in pairs):
+        return "Many values are wanted, and this is one True or False: was a tuple compared instead of its array?"
     if pairs and all(a.ndim == 0 < b.ndim for a, b in pairs):
         return "Many numbers are wanted, and this is one: is there a sum or mean too many, or without its axis?"
     if pairs and all(

@@ -50,14 +50,17 @@ def _places():
 
 
 def _positions():
-    tilt = np.radians(15.0)
-    normal = np.array([0.0, -np.sin(tilt), np.cos(tilt)])
+    normal = np.array([-0.9, 0.3, -np.sqrt(0.1)])
+    couch = np.array([-1.0, 0.5, 0.0])  # all slices at one z; y rises while x falls
     upright = np.array([[0.0, 0.0, 3.0 * k - 7.5] for k in range(6)])  # to both sides of 0
     # slice 3 is missing, and one lies too close to slice 6
     shuffled = np.array([[-100.0, -140.0, 2.5 * k - 860.0] for k in (5, -0.2, 6, 1, 6.4, 4, 2)])
-    # y falls while z rises, and x says nothing of the height
-    leaning = np.array([1.25 * k * (normal + np.array([0.5, 0.1 * normal[2], -0.1 * normal[1]])) for k in range(6)])
+    leaning = np.array([1.25 * k * couch / (couch @ normal) for k in (3, 0, 5, 1, 4, 2)])
     return [(upright, np.array([0.0, 0.0, 1.0])), (shuffled, np.array([0.0, 0.0, 1.0])), (leaning, normal)]
+
+
+def _by_z(positions):
+    return positions[np.argsort(positions[:, 2], kind="stable")]
 
 
 def _step(positions, normal):
@@ -265,9 +268,23 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p, n: np.median(np.linalg.norm(np.diff(p, axis=0), axis=1)),
                 "Files come in any order: sort the heights first.",
             ),
+            *(
+                (
+                    lambda p, n, f=f: np.median(f(np.diff(np.sort(p, axis=0) @ n))),
+                    "This sorts x, y and z each by itself, and takes positions apart: sort the heights.",
+                )
+                for f in (np.positive, np.abs)
+            ),
+            *(
+                (
+                    lambda p, n, way=way: np.median(way(np.diff(_by_z(p), axis=0), n)),
+                    "Slices that stand upright may all have one z: sort the heights, positions @ normal.",
+                )
+                for way in (np.matmul, lambda d, n: abs(d @ n), lambda d, n: np.linalg.norm(d, axis=1))
+            ),
             (
-                lambda p, n: np.median(abs(np.diff(np.sort(p, axis=0) @ n))),
-                "This sorts x, y and z each by itself, and takes positions apart: sort the heights.",
+                lambda p, n: np.median(np.diff(np.array(sorted(p.tolist())) @ n)),
+                "This sorts by x first, and the height may fall while x rises: sort the heights.",
             ),
             *(
                 (

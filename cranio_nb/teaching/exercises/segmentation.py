@@ -51,6 +51,12 @@ def _largest_of_all(mask, *, place=-1):
     return labels == np.bincount(labels.ravel()).argsort()[place]
 
 
+def _largest_times_number(mask):
+    labels, _ = ndimage.label(mask)
+    sizes = np.bincount(labels.ravel())
+    return labels == (sizes * np.arange(len(sizes))).argmax()
+
+
 def _smallest(mask):
     labels, _ = ndimage.label(mask)
     return labels == np.bincount(labels.ravel())[1:].argmin() + 1
@@ -66,7 +72,8 @@ def _widest(mask):
 def _parts():
     bone = small_head().bone[8:24]  # enough to see which part is large
     couch = bone.copy()
-    couch[2:12, 120:123, 20:40] = True
+    couch[0, 116, 0] = True  # a speck, met after the bone and before the couch
+    couch[:, 120:124, 8:120] = True  # more than a third of the bone
     early = bone.copy()
     early[0:1, 1:5, 1:5] = True
     blocks = np.zeros((9, 20, 18), bool)
@@ -187,6 +194,14 @@ EXERCISES: dict[str, Exercise] = {
                 lambda m: np.bincount(ndimage.label(m)[0].ravel())[1:].argmax() + 1,
                 "This is the number of the largest part; return the mask of it.",
             ),
+            (
+                lambda m: np.bincount(ndimage.label(m)[0].ravel())[1:].max(),
+                "This is the size of the largest part; return the mask of it.",
+            ),
+            (
+                _largest_times_number,
+                "A sum over labels is the size times the number of the part: count with (labels == i).sum().",
+            ),
             (_second_largest, "This is the second largest part."),
             (
                 partial(_largest_of_all, place=-2),
@@ -213,7 +228,10 @@ EXERCISES: dict[str, Exercise] = {
         answer=Answer("a bool mask like the one given", unit="pixels", tolerance=0.0, error=different_bools),
         mistakes=(
             (lambda m, a: ndimage.binary_fill_holes(m), "This fills the brain's place as well: fill only small holes."),
-            (lambda m, a: m, "No hole was filled: holes are parts of ~mask. Was `mask` labelled, the bone?"),
+            (
+                lambda m, a: m,
+                "No hole was filled: holes are parts of ~mask. Was `mask` labelled, the bone, or all holes counted as one?",
+            ),
             *(
                 (
                     partial(_fill_small, lost=(-1,), small=small),

@@ -131,6 +131,13 @@ EXERCISES: dict[str, Exercise] = {
                 lambda a, b: 2 * (a | b).sum() / (a.sum() + b.sum()),
                 "What is shared is a & b; a | b holds what either has.",
             ),
+            *(
+                (
+                    lambda a, b, differ=differ: 2 * differ(a, b).sum() / (a.sum() + b.sum()),
+                    "This counts voxels that only one of the masks has; what is shared is a & b.",
+                )
+                for differ in (np.logical_xor, np.greater, np.less)
+            ),
             (
                 lambda a, b: 1 - 2 * (a & b).sum() / (a.sum() + b.sum()),
                 "This is 1 - Dice, a distance: 0 for equal masks.",

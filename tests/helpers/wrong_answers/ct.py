@@ -90,8 +90,16 @@ WRONG = {
                 "p = positions[np.argsort(positions[:, 2])]; "
                 "return np.median(np.linalg.norm(np.diff(p, axis=0), axis=1))"
             ),
+            "all have one z",
+        ),
+        (
+            "p = positions[np.argsort(positions @ normal)]; "
+            "return np.median(np.linalg.norm(np.diff(p, axis=0), axis=1))",
             "the way from slice to slice",
         ),
+        ("p = positions[np.argsort(positions[:, 2])]; return np.median(np.diff(p @ normal))", "all have one z"),
+        ("p = positions[positions[:, 2].argsort()]; return np.median(abs(np.diff(p @ normal)))", "all have one z"),
+        ("return np.median(np.diff(np.array(sorted(positions.tolist())) @ normal))", "sorts by x first"),
         ("return np.median(np.diff(positions, axis=0))", "The function does not use `normal`"),
         ("return np.mean(positions @ normal)", "This is the mean height"),
         ("return np.median(np.diff(np.sort(positions, axis=0) @ normal))", "each by itself"),

@@ -101,6 +101,13 @@ WRONG = {
             "return l == 1 + np.argmax([np.prod([s.stop - s.start for s in box]) for box in boxes])",
             "largest box",
         ),
+        ("return ndimage.label(mask) == 1", "one True or False"),
+        (f"{LABELS}; return s.max()", "This is the size"),
+        ("l, n = ndimage.label(mask); return l == np.bincount(l)[1:].argmax() + 1", "labels.ravel()"),
+        (
+            "l, n = ndimage.label(mask); return l == 1 + np.argmax([l[l == i].sum() for i in range(1, n + 1)])",
+            "the size times the number",
+        ),
         ("l = ndimage.label(mask); s = np.bincount(l.ravel()); s[0] = 0; return l == s.argmax()", "take them apart"),
         (
             "l, n = ndimage.label(mask); s = ndimage.sum(mask, l, range(1, n + 1)); return l == s.argmax()",
@@ -118,10 +125,10 @@ WRONG = {
         (loop("range(1, n + 1)", "i not in at or size <= max_pixels"), "join both by `and`"),
         (loop("range(1, n + 1)", "i in at and size <= max_pixels"), "fills what touches the border"),
         (loop("range(1, n + 1)", "i not in at"), "brain"),
-        (loop("range(1, n + 1)", "i not in at and size <= max_pixels", labelled="mask"), "the bone?"),
+        (loop("range(1, n + 1)", "i not in at and size <= max_pixels", labelled="mask"), "the bone"),
         (
             "h = ndimage.binary_fill_holes(mask) & ~mask; return mask | h if h.sum() <= max_pixels else mask",
-            "No hole",
+            "counted as one",
         ),
         (
             "h = ndimage.binary_fill_holes(mask) & ~mask; l, n = ndimage.label(h); s = np.bincount(l.ravel()); "

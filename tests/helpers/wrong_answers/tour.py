@@ -35,6 +35,8 @@ WRONG = {
         ("return 2 * (a | b).sum() / (a.sum() + b.sum())", "What is shared is a & b"),
         ("return 2 * (a * b).sum() / (a.size + b.size)", "size counts all voxels of the box"),
         ("return 200 * (a & b).sum() / (a.sum() + b.sum())", "100 times the right"),
+        ("return 2 * (a ^ b).sum() / (a.sum() + b.sum())", "only one of the masks"),
+        ("return 2 * (a & ~b).sum() / (a.sum() + b.sum())", "only one of the masks"),
         ("return 1 - 2 * (a & b).sum() / (a.sum() + b.sum())", "This is 1 - Dice"),
         ("return 2 * (a & b).sum() / (a | b).sum()", "For bool masks a + b means a | b"),
         ("return (a & b).sum()", "This counts what is shared"),
