@@ -31,7 +31,6 @@ from scipy import ndimage
 import cranio_nb as cn
 from cranio_nb.stages import segmentation, surface_reconstruction
 from cranio_nb.teaching import check, classroom, pictures, widgets
-from cranio_nb.vault import verdict
 
 # %% [markdown]
 # ## Parameters
@@ -217,7 +216,7 @@ pictures.picture(fig, alt, f"{parts} parts before, {ndimage.label(kept)[1]} afte
 # This is the whole rule; the first line that holds decides:
 
 # %% tags=["nbval-check-output"]
-for number, (when, kind, confidence) in enumerate(verdict.rule_rows(), 1):
+for number, (when, kind, confidence) in enumerate(cn.vault.verdict.rule_rows(), 1):
     print(f"{number}. {when}\n   -> {kind}, confidence {confidence}")
 
 # %% [markdown]

@@ -230,7 +230,7 @@ EXERCISES: dict[str, Exercise] = {
             (lambda m, a: ndimage.binary_fill_holes(m), "This fills the brain's place as well: fill only small holes."),
             (
                 lambda m, a: m,
-                "No hole was filled: holes are parts of ~mask. Was `mask` labelled, the bone, or all holes counted as one?",
+                "No hole was filled: holes are parts of ~mask. Was the bone labelled, or all holes counted as one?",
             ),
             *(
                 (

@@ -125,7 +125,7 @@ WRONG = {
         (loop("range(1, n + 1)", "i not in at or size <= max_pixels"), "join both by `and`"),
         (loop("range(1, n + 1)", "i in at and size <= max_pixels"), "fills what touches the border"),
         (loop("range(1, n + 1)", "i not in at"), "brain"),
-        (loop("range(1, n + 1)", "i not in at and size <= max_pixels", labelled="mask"), "the bone"),
+        (loop("range(1, n + 1)", "i not in at and size <= max_pixels", labelled="mask"), "Was the bone labelled"),
         (
             "h = ndimage.binary_fill_holes(mask) & ~mask; return mask | h if h.sum() <= max_pixels else mask",
             "counted as one",
