@@ -93,7 +93,7 @@ def warned(columns: Columns) -> list[Warned]:
         That of most cases first.
     """
     found: dict[str, tuple[str, dict[str, None]]] = {}
-    for case, said in dict(zip(columns["case"], columns["warnings"], strict=True)).items():
+    for case, said in dict.fromkeys(zip(columns["case"], columns["warnings"], strict=True)):
         for sentence in json.loads(said or "[]"):
             code, message = sentence.split(": ", 1)
             found.setdefault(code, (message, {}))[1][case] = None
