@@ -84,6 +84,9 @@ def exercise(name: str, answer: Callable[..., Any], *, hint: int = 0) -> Verdict
         return Verdict(str(name), 0, len(cases), str(error), hint=_hint(task, hint))
     # a point for each case whose answer is near enough to the right one
     good = [error_of(task, yours, mine) <= task.answer.tolerance for yours, mine in zip(found, right, strict=True)]
+    if all(good) and any(_is_listed(yours, mine) for yours, mine in zip(found, right, strict=True)):
+        words = f"The right values, but in a list: {task.answer.form} is wanted, as np.array makes it."
+        return Verdict(str(name), 0, len(cases), words, hint=_hint(task, hint))
     if all(good):
         return Verdict(str(name), len(cases), len(cases), f"Right: {task.praise}")
     wrong = good.index(False)
@@ -109,7 +112,7 @@ def _answers(answer: Any, cases: list[tuple[Any, ...]]) -> list[Any]:
     """The answer to each case, on copies; refused with the reason where there is none."""
     if not callable(answer):
         raise _NoAnswerError(
-            f"A function is wanted, and this is a {type(answer).__name__}: give its name without brackets."
+            f"A function is wanted, not a value of type {type(answer).__name__}: give its name without brackets."
         )
     found = []
     for case in cases:
@@ -119,7 +122,23 @@ def _answers(answer: Any, cases: list[tuple[Any, ...]]) -> list[Any]:
             raise _NoAnswerError("The function changes what it is given; work on a copy.")
     if all(value is None for value in found):
         raise _NoAnswerError("The function returns nothing: is there a `return`?")
+    if any(_is_text(value) for value in found):
+        raise _NoAnswerError("The function returns text: return the numbers themselves, without str() or an f-string.")
     return found
+
+
+def _is_text(value: Any) -> bool:
+    """Whether an answer is made of texts, which numpy would read as the numbers they spell."""
+    try:
+        return np.asarray(value).dtype.kind in "US"
+    except (TypeError, ValueError):  # rows of several lengths
+        return False
+
+
+def _is_listed(yours: Any, mine: Any) -> bool:
+    """Whether a list or tuple stands for an array of rows, or for a mask; a row of numbers may come as a list."""
+    arrays = isinstance(mine, np.ndarray) and (mine.ndim > 1 or mine.dtype == bool)
+    return arrays and not isinstance(yours, np.ndarray)
 
 
 def _answer(answer: Callable[..., Any], given: tuple[Any, ...]) -> Any:
@@ -153,7 +172,9 @@ def _compared(task: Exercise, yours: Any, mine: Any) -> str:
         shown = show(yours)
     except Exception:  # whatever a function of ours meets in an answer of any form
         return side_by_side(yours, mine)
-    if as_numbers(shown) is None:  # what was given has a name of its own, what was made of it has none
+    given, wanted = as_numbers(yours), as_numbers(mine)
+    unlike = given is not None and wanted is not None and given.shape != wanted.shape
+    if unlike or as_numbers(shown) is None:  # what was given has a form of its own, what was made of it hides that
         return side_by_side(yours, mine)
     return side_by_side(shown, show(mine), unit)
 
@@ -192,6 +213,8 @@ def _about_shapes(error: BaseException) -> str:
             return f" - {n} numbers for {n} rows: keep it a column, as [:, [i]], [:, None] or keepdims=True do."
         case [(rows, columns), (n, "") | ("1", n)] if columns and n not in (rows, columns):
             return f" - {n} numbers for {rows} rows: summed along the wrong axis, or some left out?"
+        case [(n, ""), (m, "")]:
+            return f" - {n} numbers against {m}: one number for each row? A column, [:, None], goes with each of them."
         case [(rows, columns), (n, m)] if rows == columns and n == m:
             return f" - {rows} against {n}: is a product turned round (A @ A.T for A.T @ A), or an edge cut off?"
     return ""

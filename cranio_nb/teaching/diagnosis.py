@@ -9,7 +9,7 @@ import numpy as np
 
 from .exercises import Exercise
 from .exercises.task import Answer
-from .rules import Trial, as_numbers, near, rule_for
+from .rules import Trial, as_numbers, by_form, by_nothing, near, rule_for
 
 
 def diagnose(task: Exercise, trial: Trial) -> str:
@@ -34,11 +34,13 @@ def diagnose(task: Exercise, trial: Trial) -> str:
     >>> diagnose(task, Trial(task.right, task.cases(), right, [3 * angle for angle in right]))
     'Each of your numbers is 3 times the right one: is there a factor too many, or one too few?'
     """
+    if all(map(_finite, trial.found)) and (sentence := by_nothing(trial)):
+        return sentence
     for mistake, sentence in task.mistakes:
         if all(_made_by(mistake, task, case, value) for case, value in zip(trial.cases, trial.found, strict=True)):
             return sentence
     errors = [error_of(task, value, wanted) for value, wanted in zip(trial.found, trial.right, strict=True)]
-    return _unlike(trial.found) or rule_for(trial) or _far(task.answer, max(errors))
+    return _unlike(trial) or rule_for(trial) or _far(task.answer, max(errors))
 
 
 def error_of(task: Exercise, value: Any, wanted: Any) -> float:
@@ -58,7 +60,18 @@ def error_of(task: Exercise, value: Any, wanted: Any) -> float:
         error = float(task.answer.error(value, wanted))
     except Exception:  # whatever comes of comparing with an answer of any form
         return float("inf")
-    return error if np.isfinite(error) else float("inf")
+    if not np.isfinite(error):
+        return float("inf")
+    return 0.0 if _single_precision(value, wanted) else error
+
+
+def _single_precision(value: Any, wanted: Any) -> bool:
+    """Whether an answer in float32 is as near as float32 allows; 100 times its precision, for what adds up."""
+    if getattr(value, "dtype", None) != np.float32 or np.shape(value) != np.shape(wanted):
+        return False
+    wanted = np.asarray(wanted, float)
+    allowed = 100 * np.finfo(np.float32).eps * np.abs(wanted).max(initial=0.0)
+    return bool(np.abs(np.asarray(value, float) - wanted).max(initial=0.0) <= allowed)
 
 
 def _made_by(mistake: Callable[..., Any], task: Exercise, case: tuple[Any, ...], value: Any) -> bool:
@@ -75,11 +88,13 @@ def _made_by(mistake: Callable[..., Any], task: Exercise, case: tuple[Any, ...],
     return one.dtype != bool and other.dtype != bool and near(one, other)
 
 
-def _unlike(found: list[Any]) -> str:
+def _unlike(trial: Trial) -> str:
     """What is said of answers that are no finite numbers, or not always there."""
-    if any(value is None for value in found):
+    if any(value is None for value in trial.found):
         return "The function returns nothing for some of the cases: does every way through it end in a `return`?"
-    if not all(_finite(value) for value in found):
+    if not all(_finite(value) for value in trial.found):
+        if form := by_form(trial):
+            return f"{form} And there is NaN or infinity in it, not only finite numbers."
         return (
             "There is NaN or infinity in the answer, not a finite number: which step has no result (arcsin, sqrt, / 0)?"
         )

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _ALIKE = 1e-6  # relative
+_ROUNDED = 1e-4  # relative; what rounding can do
 _POWERS = {1: "{}", 2: "{}^2", -1: "1 / {}", -2: "1 / {}^2"}
 
 
@@ -48,6 +49,22 @@ class Trial:
         return zip(names, map(list, zip(*self.cases, strict=True)), strict=False)
 
 
+def by_nothing(trial: Trial) -> str:
+    """What is said of a function that uses none of its arguments, whatever its answers happen to be.
+
+    Parameters
+    ----------
+    trial : Trial
+
+    Returns
+    -------
+    str
+        Empty where it uses one.
+    """
+    unused = _unused(trial)
+    return _by_unused(trial) if unused and len(unused) == len(list(trial.arguments)) else ""
+
+
 def rule_for(trial: Trial) -> str:
     """The sentence of the first rule that holds.
 
@@ -68,13 +85,14 @@ def rule_for(trial: Trial) -> str:
     for rule in (
         _by_argument,
         _by_field,
-        _by_form,
+        by_form,
         _by_mask,
         _by_order,
         _by_number,
         _by_rounding,
         _by_power,
         _by_unused,
+        _by_constant,
         _by_place,
     ):
         if sentence := rule(trial):
@@ -149,8 +167,21 @@ def _by_field(trial: Trial) -> str:
     return ""
 
 
-def _by_form(trial: Trial) -> str:
+def by_form(trial: Trial) -> str:
+    """What is said of answers of another number of axes than the right ones, or turned round.
+
+    Parameters
+    ----------
+    trial : Trial
+
+    Returns
+    -------
+    str
+        Empty where the forms agree.
+    """
     pairs = _pairs(trial)
+    if pairs and all(b.ndim == 0 < a.ndim and a.size == 1 for a, b in pairs):
+        return "One number is wanted, and yours stands in an array: take it out, with [0] or float()."
     if pairs and all(b.ndim == 0 < a.ndim for a, b in pairs):
         return "One number is wanted, and these are many: which step makes one of them (sum, mean, max)?"
     if pairs and all(a.ndim == 0 < b.ndim and a.dtype == bool for a, b in pairs):
@@ -191,6 +222,8 @@ def _by_number(trial: Trial) -> str:
         return "The sign is turned: each of your numbers is minus the right one."
     at = int(np.abs(other).argmax())
     if other[at] and np.any(one) and near(one, other * (ratio := one[at] / other[at])):
+        if abs(ratio - 1) < _ROUNDED:
+            return "The right numbers but for rounding: compute with float64, not float32."
         if near(ratio, np.degrees(1)) or near(ratio, np.radians(1)):
             return (
                 "Degrees and radians are taken for each other: each of your numbers is 57.3 times too large or small."
@@ -209,6 +242,8 @@ def _by_rounding(trial: Trial) -> str:
     one, other = (np.concatenate([np.ravel(pair[i]).astype(float) for pair in pairs]) for i in (0, 1))
     if np.ptp(one) > 0 and any(np.array_equal(one, np.round(other, digits)) for digits in range(5)):
         return "The numbers were rounded: return them as they are."
+    if np.ptp(one) > 0 and np.array_equal(one, np.trunc(other)):
+        return "The numbers were cut to whole ones: by int, by `//`, or by an array of integers?"
     return ""
 
 
@@ -229,15 +264,28 @@ def _by_power(trial: Trial) -> str:
     return ""
 
 
-def _by_unused(trial: Trial) -> str:
+def _unused(trial: Trial) -> list[str]:
+    """Names of arguments that the function never reads."""
     code = getattr(trial.function, "__code__", None)
-    if code is None or not _pairs(trial):
-        return ""
+    if code is None:
+        return []
     loads = [step.argval for step in dis.get_instructions(code) if "LOAD" in step.opname]
     used = {name for found in loads for name in (found if isinstance(found, tuple) else (found,))}
-    unused = [f"`{name}`" for name, _ in trial.arguments if name not in used | set(code.co_cellvars)]
+    return [f"`{name}`" for name, _ in trial.arguments if name not in used | set(code.co_cellvars)]
+
+
+def _by_unused(trial: Trial) -> str:
+    unused = _unused(trial) if _pairs(trial) else []
     what = "what is it" if len(unused) == 1 else "what are they"
     return f"The function does not use {' and '.join(unused)}: {what} given for?" if unused else ""
+
+
+def _by_constant(trial: Trial) -> str:
+    pairs = _alike(trial, masks=True)
+    for value in (True, False):
+        if pairs and all((a == value).all() for a, _ in pairs):
+            return f"Every place is {value}: nothing was chosen."
+    return ""
 
 
 def _by_place(trial: Trial) -> str:

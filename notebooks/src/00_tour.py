@@ -108,7 +108,7 @@ diagrams.ray_fan(bone, openings[0])
 #
 # The slice is turned so that the **chord**, the straight line between the ends, lies level (thin grey dashes). The
 # orange dashes are the curve that the balloon starts from. It is made from the ends and their tangents and is a good
-# guess already, so little is left to inflate. The broad pale line is the outer edge of the bone that is missing, known
+# guess already, so little is left to change. The broad pale line is the outer edge of the bone that is missing, known
 # because this head is synthetic. The two plots below (`||dc||` and the energy) tell how the balloon comes to rest;
 # lesson 04 explains them, and the letters of the caption and of the controls too. You see the balloon at rest; where
 # there is a button to play it, watch it again from step 0.
@@ -135,11 +135,12 @@ player.set(preset="tangent pressure: k from the ends", step=300)
 # <summary>Answer</summary>
 #
 # The paper's pressure is the same for every gap, and for this one it is too weak: the curve comes out too flat, 3.8 px
-# high instead of 7.2. With k = -0.1 the wind blows the other way, and the curve sinks below the chord. Each end holds
-# its tangent over about one snaxel (a dot of the curve) only; further on the wind wins. So the curve becomes a flat S:
-# next to the steeper end it is still 0.6 px above the chord, and further on 2.8 px below. The energy falls at first
-# (from 165.5 to 158.9 px2, step 38) and then *rises* (to 160.3): energy is what the bent and stretched curve holds, and
-# the wind does work on it. Lesson 04 has this account, and tells which `k` fits and why.
+# high; the pressure from the ends made it 7.2, a little above the true bone. With k = -0.1 the wind blows the other
+# way, and the curve sinks below the chord. Each end holds its tangent over about one snaxel (a dot of the curve) only;
+# further on the wind wins. So the curve sags like a rope: next to the steeper end it is still 0.6 px above the chord,
+# and further on 2.8 px below. The energy falls at first (from 165.5 to 158.9 px2, step 38) and then *rises* (to 160.3):
+# energy is what the bent and stretched curve holds, and the wind does work on it. Lesson 04 has this account, and tells
+# which `k` fits and why.
 #
 # </details>
 #
@@ -186,7 +187,8 @@ if case.truth is not None:
 cn.show(bone, prosthesis)
 
 # %% [markdown]
-# *In a live notebook and on the site this head turns with the mouse.* Its top is flat because the slices are 2.5 mm
+# *In a live notebook and on the site this head turns with the mouse.* The letters S and I are up (superior) and down
+# (inferior). Its top is flat because the slices are 2.5 mm
 # apart (section 1): the highest slice with bone is a disc, and there is nothing between it and the next. The flat spot
 # under the hole is the outermost column of voxels in the same way.
 #

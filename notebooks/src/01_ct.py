@@ -9,7 +9,7 @@
 # %% [markdown]
 # # 01 CT: numbers with a place in the patient
 #
-# A CT is not a picture. It is a box of measurements, and each has a place in the patient. Most bugs in medical image
+# A CT is not a picture. It is a box of measurements, and each has a place in the patient. Many bugs in medical image
 # processing are here: files in the wrong order, a forgotten slope, a distance between slices taken from the wrong
 # header field. This lesson reads a DICOM folder and then breaks it on purpose.
 #
@@ -143,7 +143,8 @@ pictures.picture(fig, alt, f"one plane is as high as {ratio:.2f} rows")
 # %% [markdown]
 # How far apart are two slices? The **unit normal** is the direction at right angles to rows and columns, of length 1.
 # The **height** of a slice is how far it lies along it: height = position . normal. The difference of two heights is
-# the distance.
+# the distance. The header's ImageOrientationPatient holds both directions, three numbers each: the way along a row and
+# the way down a column. Their cross product is the normal.
 
 # %% tags=["nbval-check-output"]
 across, down = np.array(one.ImageOrientationPatient, float).reshape(2, 3)

@@ -41,9 +41,9 @@ from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 #
 # How long are 10 points? The paper does not tell the size of its pixels, only that a slice has 512 x 512 of them. A
 # scan of a head is about as wide as ours, and then they are 0.45 mm, and ten points 4.5 mm. **So this course takes
-# them.** In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are 5 px here, and 10 px are 9 mm. Lessons 00 and 04 leave
-# out 3 px only, which keeps the gap nearer to the hole: these heads are cut cleanly, and section 4 finds the tangents no
-# worse with 3 px than with 5.
+# them.** In this lesson a pixel is 0.9 mm (`case.px`): 4.5 mm are 5 px here, and 10 px are 9 mm. Lessons 00 and 04
+# leave out 3 px only, which keeps the gap nearer to the hole: these heads are cut cleanly, and section 4 finds the
+# tangents hardly worse with 3 px than with 5.
 #
 # *Which slice?* `classroom.bridged_plane` gives the one nearest to the middle of the hole in which both ends of the
 # gap can be found.
@@ -55,7 +55,9 @@ from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 case = classroom.load("class")
 bone = cn.segment(case.ct)
 opening = cn.find_openings(bone)[0]
-plane = classroom.bridged_plane(bone, opening, skip_px=5, reach_px=6)
+plane = classroom.bridged_plane(
+    bone, opening, skip_px=5, reach_px=6
+)  # the shortest reach below
 mask, px = bone.voxels[plane], case.px
 across = mask.shape[1] * px  # mm
 for whose, mm in (("our", px), ("512", across / 512)):
@@ -127,11 +129,12 @@ pictures.picture(fig, alt, f"raw skeleton {len(raw)} px, path kept {len(kept)} p
 # first.
 #
 # In the picture below the pixels used are **green**, and a **white circle** is an end of the balloon: the one of them
-# that is nearest to the gap. The thin **dashed line** is the line that was fitted: it goes through the mean of the pixels
-# used. The **green arrow** has its direction, but starts at the white circle. theta0 (at end 1) and theta1 (at end 2) of the caption are the angles
-# between the outer arrows and the chord, the straight line between their two circles. Both count from the direction
-# that leads from end 1 to end 2, so theta1, whose arrow comes the other way, is obtuse. Beside each stands the angle to
-# expect there, which section 4 explains. The caption counts the points of both ends together.
+# that is nearest to the gap. The thin **dashed line** is the line that was fitted: it goes through the mean of the
+# pixels used. The **green arrow** has its direction, but starts at the white circle. theta0 (at end 1) and theta1 (at
+# end 2) of the caption are the angles between the outer arrows and the chord, the straight line between their two
+# circles. Both count from the direction that leads from end 1 to end 2, so theta1, whose arrow comes the other way, is
+# obtuse (and more than 180 degrees where its arrow points below the chord). Beside each stands the angle to expect
+# there, which section 4 explains. The caption counts the points of both ends together.
 #
 # **Predict, then move, then explain.** (No sliders? Use `panel.set(skip_mm=0)` in a new cell, and `reach_mm`, `plane`.)
 #
@@ -148,13 +151,15 @@ panel
 # <details>
 # <summary>Answer</summary>
 #
-# 1. Pixels of the cut face join the fit and turn the line. The white circles move into the cut face: the gap seems
+# 1. Pixels of the cut face join the fit and turn the line, plainly at end 2; at end 1 hardly, as few of these pixels
+#    belong to the outer boundary there. The white circles move into the cut face: the gap seems
 #    narrower than it is (section 4 prints both lengths).
 # 2. A few pixels are a piece of a staircase, and show its step or its tread: from slice to slice the angles jump by 4
-#    degrees on average, and once by 13 (noise; section 4 prints it). With fewer than 4 pixels the package refuses to
-#    fit a line.
-# 3. The bone is curved, and the line is a chord of it: it leaves the pixels at both ends, and shows the direction in
-#    the *middle* of the neighbourhood, not at the end (bias).
+#    degrees on average, and by 13 at most (noise; section 4 prints it, of the angles less what is to be expected). With
+#    fewer than 4 pixels the package refuses to fit a line.
+# 3. The bone is curved, and the line is straight: it crosses the row of pixels twice, lies to one side of it in the
+#    middle and to the other at both ends. So it has the direction of the *middle* of the neighbourhood, not that of its
+#    end (bias).
 #
 # Noise and bias both bend the balloon. Section 4 measures them.
 #
@@ -224,7 +229,7 @@ def errors_near(case, bone, opening, plane, skip, reach):
     for p in [p for p in range(*opening.planes) if abs(p - plane) <= 5]:
         try:
             length, angles = measured(case, bone, opening, p, skip, reach)
-        except cn.CranioError:  # no gap in this slice
+        except cn.CranioError:  # no gap in this slice, or too few pixels for a line
             continue
         steeper.append((angles - expected(case, p, length)) * [1, -1])
     return np.array(steeper)
@@ -259,8 +264,8 @@ print("; ".join(each))
 # doubles: that is the trade of noise against bias. With 44 px, the 40 mm of question 3, there is no less scatter and
 # nearly twice the error again. (At 6 px the noise is too large to tell the bias, and some slices are refused, too.)
 # With `skip` = 0 the cut face adds an error of its own, to the other side and larger than any with the same `reach`.
-# From `skip` 5 to 10 px the angles grow mostly because the gap is wider. And 3 px do as well as 5 px here, where
-# the cut is clean: the mean errors and the scatters are alike.
+# From `skip` 5 to 10 px the ends get steeper mostly because the gap is wider. And 3 px do nearly as well as 5 px here,
+# where the cut is clean: the mean errors are alike, and so are the scatters but for the third head (2.1 against 1.3).
 #
 # **Question.** The paper leaves out "10 points". On a scan with pixels twice as large, is this the same?
 #
@@ -277,7 +282,7 @@ print("; ".join(each))
 # ## A mistake to make once
 #
 # Not every slice that the hole touches is an open ring: near its upper and lower end only part of the thickness is
-# missing, or nothing. A closed ring has no ends, and the package says so, here of a slice a little below the hole.
+# missing. A closed ring has no ends, and the package says so, here of a slice a little below the hole.
 # (Lesson 05 has the paper's answer for these.)
 
 # %% tags=["raises-exception"]
@@ -288,7 +293,7 @@ feature_extraction.find_gap_ends(closed)
 # ## Exercises
 #
 # **Exercise 3.1.** The boundary. Return the pixels of bone that have at least one pixel that is not bone among their
-# four neighbours. What lies outside the image is not bone.
+# four neighbours. What lies outside the image is not bone. Return a bool mask.
 
 
 # %% tags=["solution"]

@@ -112,11 +112,12 @@ diagrams.chord_frame(drawn, expected_deg=expect)
 # Every $\Delta s$ cancels, for the fourth derivative as well. What is left are second and fourth differences **per
 # index**, with weights 1. Keep this in mind; it is the key to section 4.
 #
-# Each snaxel then feels three forces. Here they are for the paper's `k` in a gap of 90 px whose ends rise at 13.8 degrees
-# (a gap in a circle, see section 3). A force has the colour of what exerts it: blue the curve, black the wind. Of the
-# blue arrows those of the tension have a full head, those of the rigidity an open one. Arrows to one side of the curve
-# stand one on another: where the rigidity points outward, it begins at the tip of the wind. A force is in px: so far it
-# alone would move the snaxel in a unit of time. (`k` per index squared is the same number: the index has no unit.)
+# Each snaxel then feels three forces. Here they are for the paper's `k` in a gap of 90 px whose ends rise at 13.8
+# degrees (a gap in a circle, see section 3). A force has the colour of what exerts it: blue the curve, black the wind.
+# Of the blue arrows those of the tension have a full head, those of the rigidity an open one. Arrows to one side of the
+# curve stand one on another: where the rigidity points outward, it begins at the tip of the wind. A force is in px: so
+# far it alone would move the snaxel in a unit of time. (`k` per index squared is the same number: the index has no
+# unit.)
 
 # %% tags=["nbval-check-output"]
 theta = np.radians(13.8)
@@ -131,9 +132,10 @@ diagrams.snaxel_forces(90.0, theta, np.pi - theta, pressure=0.062)
 #
 # $$(I + \Delta t\,A)\,c^{t+\Delta t} = c^t + \Delta t\,k\,\vec n(c^t)$$
 #
-# A is the matrix of these differences, minus the second plus the fourth: five diagonals. The curve is at rest when a
-# step has moved it by less than `tol`: $\lVert dc\rVert = \lVert c^{t+\Delta t} - c^t\rVert$, the norm over all
-# snaxels.
+# A is the matrix of these differences, minus the second plus the fourth: five diagonals. (At the two ends the
+# differences reach snaxels that do not exist; there the fixed ends and their slopes come in, as further terms on the
+# right.) The curve is at rest when a step has moved it by less than `tol`: $\lVert dc\rVert = \lVert c^{t+\Delta t} -
+# c^t\rVert$, the norm over all snaxels.
 #
 # The **elastic energy** is what the curve holds by being stretched and bent, per index like all else:
 #
@@ -145,10 +147,11 @@ diagrams.snaxel_forces(90.0, theta, np.pi - theta, pressure=0.062)
 # and a rising one is no fault; $\lVert dc\rVert$ is what counts.
 #
 # **Predict, then move, then explain.** The panel begins at the start curve (step 0): press play, or put `step` to its
-# end. (a) Choose the preset *paper*: does the curve come to rest above or below the dashed start? (b) Double N at the
-# same `k` (21 -> 41 snaxels, under *more settings*): twice as high, four times, or the same? Set `dt` to 4, for the
-# picture stops after 300 steps. (c) Turn `k` negative. (d) Does the energy fall in all of these, and with k = 0.4? (No
-# sliders? Use `panel.set(n=41, dt=4, step=300)` and the like in a new cell; `k` is called `pressure`.)
+# end. (a) With the first preset, the paper's `k`, in which the panel begins: does the curve come to rest above or below
+# the dashed start? (b) Double N at the same `k` (21 -> 41 snaxels, under *more settings*): twice as high, four times,
+# or the same? Set `dt` to 4, for the picture stops after 300 steps. (c) Turn `k` negative. (d) Does the energy fall in
+# all of these, and with k = 0.4? (No sliders? Use `panel.set(n=41, dt=4, step=300)` and the like in a new cell; `k` is
+# called `pressure`.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.balloon(outer, inside, background=bone.voxels[plane], truth=truth, px=case.px)
@@ -218,8 +221,8 @@ for k in (-0.062, 0.062, 0.4):
 diagrams.chord_at_rest(drawn, deformable_model.PAPER_PRESSURE)
 
 # %% [markdown]
-# Mind the pixel, for `k` counts in px. Here it is taken per pixel of *ours*. Taken per pixel of the paper's size (0.45 mm,
-# as lesson 03 guesses it) the parabola is half as high in mm, in the same gap:
+# Mind the pixel, for `k` counts in px. Here it is taken per pixel of *ours*. Taken per pixel of the paper's size (0.45
+# mm, as lesson 03 guesses it) the parabola is half as high in mm, in the same gap:
 
 # %% tags=["nbval-check-output"]
 high = deformable_model.PAPER_PRESSURE * 20**2 / 8  # px
@@ -231,9 +234,10 @@ for size in (case.px, 0.45):
 # %% [markdown]
 # Either way the curve is too flat; by how much depends on this choice.
 #
-# And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of 0.45 mm, the paper's) and cut
-# gaps into them. The last of them is as wide as ours, 160 px, and the circle somewhat rounder than our bone: there the
-# parabola is about a sixth of the true height, not a half as above, and the balloon at rest a third.
+# And in other gaps? We draw arcs of a circle of radius 189 px (a head of 85 mm in pixels of 0.45 mm, the paper's) and
+# cut gaps into them. The last of them is as wide as ours, 160 px. There the parabola is about a sixth of the true
+# height, and the balloon at rest a third. (In our own gap, counted in the same small pixels, the parabola is about a
+# quarter of it: our bone is less round than this circle. In our pixels it was a half.)
 
 # %% tags=["nbval-check-output"]
 RADIUS, N_SNAXELS = 189.0, 21
@@ -376,9 +380,9 @@ pictures.picture(
 
 # %% [markdown]
 # **Is a balloon needed at all?** Look at the last row printed: with exact tangents the start curve is nearly as good as
-# the balloon, and the start spiral is the circle itself. But lesson 03 found tangents that are some degrees off. Let us
-# turn them by 5 degrees in each way there is, and then by chance: 300 times both ends, each by itself, by 4 degrees
-# (standard deviation).
+# the balloon, and between equal ends the start spiral is the circle itself. But lesson 03 found tangents that are some
+# degrees off. Let us turn them by 5 degrees in five ways, and then by chance: 300 times both ends, each by itself, by 4
+# degrees (standard deviation).
 #
 # **Predict:** in which of these does the balloon help most, and in which not at all?
 
@@ -398,6 +402,7 @@ turned = {
     "both too steep": (5, -5),
     "both too flat": (-5, 5),
     "one end too steep": (5, 0),
+    "one end too flat": (-5, 0),
 }
 print("gap of 120 px, ends off by 5 degrees:   cubic  balloon  spiral (px)")
 for name, turns in turned.items():
@@ -440,7 +445,8 @@ pictures.picture(fig, alt, f"median error (px): {medians}")
 # - Tangents turned the **same way** leave the difference as it was. There the balloon gains: its error is 0.49 px where
 #   spiral and cubic have 1.03 and 1.30, and in the four gaps theirs is 1.4 to 2.9 times as large.
 # - Where both are **too steep** or **too flat**, the whole error stands in the difference, and nothing is gained worth
-#   the name (3.14 px against 3.27 and 2.71; 2.59 against 2.57 and 2.67). With **one** end off it is in between.
+#   the name (3.14 px against 3.27 and 2.71; 2.59 against 2.57 and 2.67). With **one** end
+#   off the two halves of that mix: too steep, it is no better than the spiral; too flat, better than both.
 # - **By chance** it gains a little: 1.32 px on average against 1.62 for the cubic and 1.49 for the spiral, with a
 #   spread of about one px each. It is not the better one in every draw.
 #
@@ -492,7 +498,7 @@ print(
 # Between 2.6 and 4.2 times as many for twice `N`, and about a third for four times `dt` (once a half). In none of these
 # a quarter, for the reason given in the trap below: with small `dt` the curve "stops" earlier on its way. Because the
 # scheme is implicit nothing blows up; only the normal is taken from the old curve. (The apex falls with `N` because the
-# clamped slope holds up a few snaxels next to each end, and with fewer snaxels these are a larger part of the gap.)
+# clamped slope holds up about one snaxel next to each end, and with fewer snaxels these are a larger part of the gap.)
 #
 # </details>
 #

@@ -38,8 +38,8 @@ from cranio_nb.teaching import check, classroom, diagrams, pictures, widgets
 # | `skip_mm` | boundary left out next to the gap (lesson 03); 1.5 if not given | mm | 10 points, here 4.5 mm |
 # | `reach_mm` | boundary that carries the tangent, after that; 10 if not given | mm | not given |
 # | `pressure_mm` | a constant `k`; if not given it follows from the ends (lesson 04) | mm per index squared | 0.062 px |
-# | `axial` | cut along the planes of the scan, or along fans (section 4) | yes or no | yes |
-# | `directions` | with fans: in how many directions the hole is cut | 1 | no fans |
+# | `axial` | cut along the planes of the scan; if not given along fans (section 4) | yes or no | yes |
+# | `directions` | with fans: in how many directions the hole is cut; 6 if not given | 1 | no fans |
 # | `coupling_mm` | with fans: how far neighbouring slices share tangents (section 5); 4 if not given | mm | no fans |
 #
 # *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
@@ -57,8 +57,8 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 #
 # We run the paper's own preset and look at one slice. It leaves out 4.5 mm of boundary at the cut: the paper's ten
 # points, as lesson 03 takes them. Over what length the tangent is fitted the paper does not say: the preset takes ten
-# points of ours, for a line through fewer would jump (lesson 03). And `k`, 0.062 px, is taken per pixel of ours too, that
-# is, times 0.9 mm. Per pixel of 0.45 mm it would be half of that, and the curves, too flat already, flatter still
+# points of ours, for a line through fewer would jump (lesson 03). And `k`, 0.062 px, is taken per pixel of ours too,
+# that is, times 0.9 mm. Per pixel of 0.45 mm it would be half of that, and the curves, too flat already, flatter still
 # (lesson 04, section 3). What the authors meant we cannot know; the preset takes the stronger of the two.
 #
 # The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
@@ -79,7 +79,9 @@ plane = one.plane + first
 outer, inner = one.curves
 region = prosthesis_volume.pixels_between(outer, inner, bone.shape[1:])
 patch = prosthesis_volume.fill_gap(outer, inner, bone.voxels[plane])
-print(f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without the bone")
+print(
+    f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without bone and crumbs"
+)
 
 # %% tags=["nbval-check-output"]
 fig, (left, right) = pictures.slices(2, bone, around=[outer, inner], height=4.6, width=7.0)
@@ -165,9 +167,9 @@ if case.truth is not None:
 #
 # (Dice, of lesson 00, says how well the patch and the missing bone overlap: 1 is perfect. HD95: 95 % of the distances
 # between their surfaces are smaller; lesson 07.) Both are poor for a hole whose rim is all there to be seen. It is not
-# the filling that fails: the curves run inside the true ones. How far? We measure the outer curve against the true one
-# in every second slice, above the true chord and away from its ends. One head is one draw, so we take two more, of
-# another shape and with other noise.
+# the filling that fails: on the whole the curves run inside the true ones. How far? We measure the outer curve against
+# the true one in every second slice, above the true chord and away from its ends. One head is one draw, so we take two
+# more, of another shape and with other noise.
 
 # %%
 heads = [(case, bone, openings)]
@@ -204,17 +206,18 @@ for number, (head, design) in enumerate(zip(heads, papers, strict=True)):
     print(
         f"head {number}: inside by {by.mean():.1f} mm on average of {len(by)} slices,", end=" "
     )
-    print(f"{middle.mean():.1f} mm in the middle third, at most {by.max():.1f} mm")
+    print(f"{middle.mean():.1f} mm in the middle third,", end=" ")
+    print(f"from {by.min():.1f} to {by.max():.1f} mm")
 
 # %% [markdown]
-# The mean hides the middle of the hole, where the gap is widest and the curve runs about 2 mm inside. Section 4 takes
-# apart why.
+# The mean hides the middle of the hole, where the curve runs about 2 mm inside. (The largest value need not lie there:
+# a single bad slice can have it, as one further below.) Section 4 takes apart why.
 #
 # **Predict, then move, then explain.** The panel starts with the pressure *from the end tangents*; the counts and
-# scores above are those of the paper's constant, which is the other choice. Go through the slices from the first to
-# the last (the bars beside the slice are the areas of their patches). Where will the patch be smallest, where does the
-# hull take over from the balloon, and are there bad slices in between? (No sliders? Use `panel.set(plane=23)` and the
-# like in a new cell.)
+# scores above are those of the paper's constant, which is the other choice (`panel.set(pressure="the paper's constant
+# k")`). Go through the slices from the first to the last (the bars beside the slice are the areas of their patches).
+# Where will the patch be smallest, where does the hull take over from the balloon, and are there bad slices in between?
+# (No sliders? Use `panel.set(plane=23)` and the like in a new cell.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.patch(bone, opening)
@@ -242,9 +245,10 @@ for s in balloons[:2] + balloons[-3:]:
 #
 # The last slice with a balloon is bad: next to nothing is left of its patch. Its outer theta1 stands out among those
 # printed. More than 180 degrees means that the curve has to arrive from *inside* the head, so outer and inner curve
-# all but meet: the outer tangent was fitted to bone that the cutter had slanted. **One bad tangent spoils a slice**, and a
-# slice knows nothing of its neighbours. (The smaller jumps from bar to bar, in the middle, have much the same source:
-# each slice finds its own ends and tangents, with the noise of lesson 03.) Section 5 helps.
+# all but meet. Look at its lower end in the panel: the outer curve starts on the slanted rim, and the tangent was
+# fitted there. **One bad tangent spoils a slice**, and a slice knows nothing of its neighbours. (The smaller jumps from
+# bar to bar, in the middle, have much the same source: each slice finds its own ends and tangents, with the noise of
+# lesson 03.) Section 5 helps.
 #
 # </details>
 #
@@ -254,8 +258,8 @@ for s in balloons[:2] + balloons[-3:]:
 #
 # - **`skip`.** Ten points of 0.45 mm are 4.5 mm. Who counts ten points on our pixels leaves out 9 mm on each side, and
 #   a chord 9 mm longer in all must be bridged from farther away.
-# - **`k`.** A constant in px per index squared fits one width of gap (lesson 04). Here it counts our pixels (section 1);
-#   all that follows is for this choice.
+# - **`k`.** A constant in px per index squared fits one width of gap (lesson 04). Here it counts our pixels (section
+#   1); all that follows is for this choice.
 #
 # **Predict:** which of the two costs more here? And if both are mended, is anything left? (The *mean distance* is that
 # between the surfaces of the patch and of the missing bone, both ways.)
@@ -293,7 +297,8 @@ for skip in (10 * px, 10 * 0.45):
 # Compare the rows in pairs. In each of the three heads both causes cost, and `k` costs more: mending `k` alone gains
 # more than mending `skip` alone (0.807 and 0.712 from 0.549 in the first), and mending both gains most (0.850), but
 # less than the sum of the two. The two are not independent: a shorter gap needs less height, so the weak constant does
-# less harm in it. What is left comes, in part, from single bad tangents like that of the last balloon above.
+# less harm in it. A part of what is left comes from single bad tangents like that of the last balloon above (section
+# 5).
 #
 # </details>
 #
@@ -304,12 +309,13 @@ for skip in (10 * px, 10 * 0.45):
 # the short side of the hole, where the way from bone to bone is shortest. Our default turns the fan into six directions
 # and takes a mean, in which a slice counts more where it is the surer: near its rim, and on a short way.
 #
-# Slices of a fan differ from axial ones in more than their direction. They lie closer than the planes of the scan, their
-# rims are read along rays, between the pixels, and neighbours share their tangents (section 5). One row leaves the
-# sharing out: in it each slice is alone, like an axial one.
+# Slices of a fan differ from axial ones in more than their direction. They lie closer than the planes of the scan,
+# their rims are read along rays, between the pixels, and neighbours share their tangents (section 5). One row leaves
+# the sharing out: in it each slice is alone, like an axial one.
 #
-# **Predict:** will one fan, across the short side, be enough? (Twelve designs: the next cell takes some 20 seconds. They
-# have the package's own settings, not the paper's preset: so the row `axial` differs a little from the last one above.)
+# **Predict:** will one fan, across the short side, be enough? (Twelve designs: the next cell takes some 20 seconds.
+# They have the package's own settings, not the paper's preset: so the row `axial` differs a little from the last one
+# above.)
 
 # %% tags=["nbval-check-output"]
 tries = {"axial": {"axial": True}, "one fan, each alone": {"directions": 1, "coupling_mm": 0}}
@@ -372,7 +378,7 @@ for n, each, together in ((1, alone, one_way), (6, six_alone, six_ways)):
 #
 # With one direction sharing helps in each of the three heads, by 0.10 to 0.22 mm. Six directions help more: even with
 # each slice alone they come nearer than one direction with shared tangents. And they leave little to gain: 0.05 mm in
-# two heads, nothing in the third.
+# two heads, and in the third it even costs 0.01 mm.
 #
 # </details>
 #

@@ -35,8 +35,8 @@ from cranio_nb.teaching import check, classroom, pictures, widgets
 #
 # | name | meaning | unit | paper |
 # |---|---|---|---|
-# | `smooth` | place vertices between the voxels; yes if not given | yes or no | no |
-# | `n_steps` | steps of smoothing; 24 if not given | 1 | no |
+# | `smooth` | let vertices leave the half-way points of marching cubes; yes if not given | yes or no | no |
+# | `n_steps` | steps of smoothing (`steps` in the panel); 24 if not given | 1 | no |
 #
 # *The switch:* `classroom.load("full")` takes a head of the paper's size, `classroom.load(scan="path/to/your/scan")` a
 # scan of your own.
@@ -117,9 +117,9 @@ print(f"volume {raw.volume / 1000:.2f} cm3 before, {smooth.volume / 1000:.2f} cm
 # %% [markdown]
 # **Predict, then move, then explain.** The smoother the surface, the smaller its area. How many steps of smoothing does
 # it take until the area hardly falls any more? Can you leave the bound by taking all that the panel has? How far will
-# those vertices have moved that are stopped by it? (The bars beside the mesh count vertices by the way they moved; their
-# scale is logarithmic, so that a few can be seen beside many.) (No sliders? Use `panel.set(steps=48)` in a new cell.)
-# The cell below the panel goes on to 200 steps.
+# those vertices have moved that are stopped by it? (The bars beside the mesh count vertices by the way they moved;
+# their scale is logarithmic, so that a few can be seen beside many.) (No sliders? Use `panel.set(steps=48)` in a new
+# cell.) The cell below the panel goes on to 200 steps.
 
 # %% tags=["nbval-check-output"]
 panel = widgets.surface(patch)
@@ -143,14 +143,15 @@ for steps in (10, 24):
 # <details>
 # <summary>Answer</summary>
 #
-# About ten steps bring most of it: they take off 83 % of the area that two hundred take off, and the default 24 take off
-# 94 %. After that the vertices still creep (0.51 to 0.61 mm on average), and the area hardly falls. (0 steps already
-# put each vertex where the distance to the patch's edge, signed and smoothed, is zero; the panel's 0 is marching cubes
-# itself.) You cannot leave the bound: each vertex is clipped to its box of half a voxel in every step.
+# About ten steps bring most of it: counted from 0 steps, they take off 83 % of the area that two hundred take off, and
+# the default 24 take off 94 %. After that the vertices still creep (0.51 to 0.61 mm on average), and the area hardly
+# falls. (0 steps already put each vertex where the distance to the patch's edge, taken negative inside and smoothed, is
+# zero; the panel's 0 is marching cubes itself, with a larger area.) You cannot leave the bound: each vertex is clipped
+# to its box of half a voxel in every step.
 #
 # What would go further stops at a wall of the box. Those that a wall half a plane away stops make the pile near
 # 1.25 mm, and a little beyond it, as along the wall a vertex may still move. Those that a wall half a pixel away stops
-# are no fewer, but the bars do not show them: many others have moved as far. Only a vertex that is stopped along all
+# the bars do not show: many others have moved as far. Only a vertex that is stopped along all
 # three axes sits in a corner of the box, at 1.40 mm.
 #
 # </details>

@@ -112,17 +112,20 @@ for name, (one, skull, opening, closed) in holes.items():
     print(f"{name:12} {a:5.0f} x {b:2.0f} {depth:9.1f} mm {s.dice:9.3f} {s.hd95:6.2f} mm")
 deepest = against_truth.measure_against(sheet, true, bone).distances["outer"].max()
 print(f"this hole: the hull lies {deepest:.1f} mm from the true outer side at most")
+# the sphere through the true outer side: |p|^2 = 2 c . p + (R^2 - |c|^2), linear in c and the bracket
+p = true.surface(cn.mesh.OUTER).vertices
+unknown = np.linalg.lstsq(np.column_stack([2 * p, np.ones(len(p))]), (p**2).sum(axis=1))[0]
+print(f"it fits a sphere of {np.sqrt(unknown[3] + (unknown[:3] ** 2).sum()):.0f} mm")
 
 # %% [markdown]
 # So the same hull that fails across our hole will do for a burr hole (HD95 0.90 mm, one pixel), on each of three heads.
-# And across our hole it lies less deep than the sphere foretells: the side of a head is flatter than a sphere of 75 mm,
-# and the rim of the hole is not plane.
+# And across our hole it lies less deep than the sphere foretells: the true outer side fits a flatter sphere, of 99 mm.
 #
 # ## 2. The mirror
 #
 # The plane that maps the skull onto itself is found from the outer surface: two angles and an offset, such that the
-# mirrored points lie on the surface again. The **residual** is how far they still lie off; no plane can do better, so
-# it says how far the shape differs from its mirror image. What it cannot say comes below.
+# mirrored points lie on the surface again. The **residual** is how far they still lie off with the best plane, so it
+# says how far the shape differs from its mirror image. What it cannot say comes below.
 
 # %% tags=["nbval-check-output"]
 bent = cn.design(bone, openings, method="reflection")  # its image is bent to the rim
@@ -162,7 +165,7 @@ for turn, lean, shift in moves:
 #
 # </details>
 #
-# No head is like its mirror image. Let us make ours lopsided: the sound half 4 % wider. The hole, and the truth in it,
+# Let us make ours lopsided: the sound half 4 % wider. The hole, and the truth in it,
 # stay what they were. (The hole is on the patient's left; the right is at the small column numbers.)
 
 # %% tags=["nbval-check-output"]
@@ -183,7 +186,9 @@ for name, skull in {"our head": bone, "lopsided": lopsided}.items():
 # %% tags=["nbval-check-output"]
 for name in ("our head", "lopsided"):
     found = copies[name, True].record["symmetry"]
-    print(f"{name}: offset {found['offset_mm']:.2f} mm, residual {found['residual_mm']:.2f} mm")
+    right = plane["point"][0] - found["point"][0]  # x rises towards the patient's left
+    print(f"{name}: plane moved {right:.2f} mm to the right,", end=" ")
+    print(f"residual {found['residual_mm']:.2f} mm")
 
 # %% [markdown]
 # **Question.** Why does bending the image to the rim help one head so much more than the other? And why does the
@@ -194,7 +199,7 @@ for name in ("our head", "lopsided"):
 #
 # The phantom is nearly symmetric: its mirror image is nearly right already, and the fit gains little. On the
 # lopsided head the image lies beside the bone (lesson 07 tried other widths), and the rim says by how much. Real heads
-# are of the second kind.
+# are not symmetric either.
 #
 # The residual is small as the plane has moved over, into the middle of the wider head. What is left shows only where
 # the shape differs, not the width. A small residual is necessary for a good mirror, not sufficient.
@@ -254,8 +259,9 @@ print(f"here in mm: max {in_mm.max():.2f}; a voxel is {size}")
 
 # %% [markdown]
 # Nearly the same ratio, a half. So the paper's largest distance of 6.06 voxels may well be the height of the cap that
-# was missing, and the mean is what geometry makes of it. (The 4.82 voxels here are 5.10 mm: the way to the true surface
-# leads a little upwards, too, and a voxel is 0.9 mm wide but 2.5 mm high. The panel above measures the film itself,
+# was missing, and the mean is what geometry makes of it. (Here the largest distance is 4.82 voxels or 5.10 mm, and
+# these are two distances, not one in two units. A step of one voxel upwards is 2.5 mm, aside 0.9 mm: who counts voxels
+# finds another place the nearest, higher up, and another node the worst. The panel above measures the film itself,
 # before it is made of voxels: 5.14 mm at most. That its mean of 2.54 mm equals the table's 2.54 voxels is chance.)
 #
 # ## 4. Side by side
@@ -300,7 +306,8 @@ pictures.picture(fig, alt, f"slice {at}: {lost.sum() * px**2:.0f} mm2 of bone ar
 # <details>
 # <summary>Answer</summary>
 #
-# A surface of least area never leaves the convex hull of its rim, so the film lies under the sheet everywhere. The rim
+# A surface of least area never leaves the convex hull of its rim (what sticks out could be cut off flat, and the cut
+# would have less area), so the film lies nowhere above the sheet. The rim
 # of this hole is not plane: the sheet goes over its highest places, the film sags between them.
 #
 # </details>
@@ -317,8 +324,8 @@ cn.design(frontal, method="reflection")
 # ## Exercises
 #
 # **Exercise 8.1.** The symmetry plane from pairs. `a` (n, 3) are points on one side of the head and `b` (n, 3) their
-# partners on the other. Return the plane's unit normal and a point on it. (Lesson 07 mirrored at a plane; this is the
-# way back.)
+# partners on the other, each measured, so a little off. Return the plane's unit normal and a point on it. (Lesson 07
+# mirrored at a plane; this is the way back.)
 
 
 # %% tags=["solution"]

@@ -46,7 +46,7 @@ def test_own_catalogue_says_what_it_should(name):
         (lambda *a: None, "returns nothing"),
         (lambda *a: 1 / 0, "ZeroDivisionError"),
         (lambda: 1, "TypeError"),
-        (lambda *a: "text", "right form"),
+        (lambda *a: "text", "returns text"),
         (lambda *a: np.full(7, np.nan), "NaN"),
         (lambda *a: {"a": object()}, "right form"),
     ],

@@ -25,11 +25,15 @@ def _stretched(hu, centre, width):
 
 
 def _grey_error(answer, right):
-    """Largest difference in grey levels; black and white can be met exactly, and count a little more."""
+    """Largest difference in grey levels; black and white can be met exactly, and count a little more.
+
+    Whole greys may be off by 1, whichever way they were made whole; others by a hundredth, which float32 keeps.
+    """
     grey = np.asarray(answer, float)
     if grey.shape != right.shape:
         return float("inf")
-    return float((np.abs(grey - right) * np.where(np.isin(right, (0, 255)), 1.001, 1)).max())
+    weight = np.where(np.isin(right, (0, 255)), 1.001, 1) * (1 if np.all(grey == np.rint(grey)) else 100)
+    return float((np.abs(grey - right) * weight).max())
 
 
 def _outside(hu, centre, width, *, below, above, ends):
@@ -53,8 +57,8 @@ def _positions():
     normal = np.array([-0.9, 0.3, -np.sqrt(0.1)])
     couch = np.array([-1.0, 0.5, 0.0])  # all slices at one z; y rises while x falls
     upright = np.array([[0.0, 0.0, 3.0 * k - 7.5] for k in range(6)])  # to both sides of 0
-    # slice 3 is missing, and one lies too close to slice 6
-    shuffled = np.array([[-100.0, -140.0, 2.5 * k - 860.0] for k in (5, -0.2, 6, 1, 6.4, 4, 2)])
+    # slice 3 is missing, and one lies too close to slice 6; the two steps in the middle differ, so the median is theirs
+    shuffled = np.array([[-100.0, -140.0, 2.5 * k - 860.0] for k in (5, -0.2, 6, 1, 6.5, 4, 2.1)])
     leaning = np.array([1.25 * k * couch / (couch @ normal) for k in (3, 0, 5, 1, 4, 2)])
     return [(upright, np.array([0.0, 0.0, 1.0])), (shuffled, np.array([0.0, 0.0, 1.0])), (leaning, normal)]
 
@@ -107,6 +111,11 @@ EXERCISES: dict[str, Exercise] = {
                 lambda h, c, w: np.clip((h - c + w / 2) // w, 0, 1) * 255,
                 "`//` cuts to whole numbers, and no grey is left: divide by `/`.",
             ),
+            (
+                lambda h, c, w: np.clip((h - c + w / 2) / w * 256, 0, 255),
+                "Multiply by 255: by 256 white is reached before the high end of the window.",
+            ),
+            (lambda h, c, w: _grey(h, w, c), "centre and width are exchanged."),
             (_wrapped, "uint8 starts again at 0 after 255: clip first, then change the type."),
             (
                 lambda h, c, w: _grey(h, c, 2 * w),
@@ -180,6 +189,7 @@ EXERCISES: dict[str, Exercise] = {
                     lambda m, i: np.diag(m) * i,
                     lambda m, i: np.abs(m).max(axis=0) * i,
                     lambda m, i: m.sum(axis=0) * i,
+                    lambda m, i: np.array([m[0, 2] * i[2], m[1, 1] * i[1], m[2, 0] * i[0]]),
                 )
             ),
             *(
@@ -206,6 +216,10 @@ EXERCISES: dict[str, Exercise] = {
             (lambda a, i: a[:3, :3] @ (i + a[:3, 3]), "First the steps, then the origin: it is in mm already."),
             (lambda a, i: a[:3, :3] * i + a[:3, 3], "`*` multiplies number by number; a matrix times a vector is `@`."),
             (lambda a, i: a[:3, :3] @ i - a[:3, 3], "The origin is added, not taken away."),
+            (
+                lambda a, i: (a[:3, :3] @ i + a[:3, 3]) * (-1, -1, 1),
+                "x and y have their signs turned: the matrix gives x to the left and y to the back already.",
+            ),
             (lambda a, i: a[:3, 3], "This is the place of voxel (0, 0, 0): add the steps of the index."),
             (lambda a, i: i + a[:3, 3], "These are still voxels, moved: a step has a length and a direction in mm."),
             (lambda a, i: a[:3, :3] @ (i + 0.5) + a[:3, 3], "Half a voxel off: an index is the centre of its voxel."),
@@ -247,6 +261,17 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p, n: np.diff(np.sort(p @ n)).min(),
                 "This is the smallest step, and one slice lies too close: take the median.",
             ),
+            *(
+                (
+                    lambda p, n, at=at: np.sort(np.diff(np.sort(p @ n)))[at(len(p) - 1)],
+                    "Of an even number of steps the median is the mean of the two in the middle: np.median.",
+                )
+                for at in (lambda steps: steps // 2, lambda steps: (steps - 1) // 2)
+            ),
+            (
+                lambda p, n: np.median(abs(np.subtract.outer(p @ n, p @ n))[np.triu_indices(len(p), 1)]),
+                "These are the ways between all pairs; wanted are those between neighbours: np.diff of sorted heights.",
+            ),
             (
                 lambda p, n: np.diff(np.sort(p @ n)).max(),
                 "This is the largest step, and a slice is missing there: take the median.",
@@ -271,7 +296,7 @@ EXERCISES: dict[str, Exercise] = {
             *(
                 (
                     lambda p, n, f=f: np.median(f(np.diff(np.sort(p, axis=0) @ n))),
-                    "This sorts x, y and z each by itself, and takes positions apart: sort the heights.",
+                    "This sorts x, y and z each by itself, or drops signs of the normal: sort positions @ normal.",
                 )
                 for f in (np.positive, np.abs)
             ),

@@ -15,7 +15,7 @@ _ROUNDED = "The number was rounded, or cut by `//`: return it whole."
 
 
 def _pressures():
-    return [(0.062, 21), (0.062, 41), (0.0213, 31)]
+    return [(0.062, 21), (0.062, 40), (0.0213, 31)]
 
 
 @cache

@@ -32,8 +32,9 @@ def _percentiles(a, b):
 
 
 def _planes():
-    points = np.array([[50.0, 0.0, 10.0], [-20.0, 33.0, 4.0], [2.0, -70.0, 30.0]])
-    lean = np.array([0.96, 0.28, 0.0])
+    # not as many points as coordinates, and one normal without a 0
+    points = np.array([[50.0, 0.0, 10.0], [-20.0, 33.0, 4.0], [2.0, -70.0, 30.0], [7.0, 11.0, -25.0], [0.0, 3.0, 60.0]])
+    lean = np.array([2.0, -1.0, 2.0]) / 3
     return [
         (points, np.array([1.0, 0.0, 0.0]), np.zeros(3)),
         (points, np.array([1.0, 0.0, 0.0]), np.array([2.3, 0.0, 0.0])),
@@ -98,7 +99,7 @@ EXERCISES: dict[str, Exercise] = {
                 )
             ),
             (
-                lambda a, b: 0.0,
+                lambda a, b: np.percentile(np.append(cKDTree(a).query(a)[0], cKDTree(b).query(b)[0]), 95),
                 "All distances are 0: each set is asked for its own points; tree and query belong to different sets.",
             ),
             (lambda a, b: np.percentile(_both_ways(a, b) ** 2, 95), "These are squares of distances."),
@@ -125,10 +126,6 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p, n, o: p - 2 * (p @ n)[:, None] * n,
                 "The plane does not pass through 0, 0, 0: measure from the origin given.",
-            ),
-            (
-                lambda p, n, o: p - 2 * ((p - o) @ n) * n,
-                "Each point needs its own distance: a column, distance[:, None], times the normal.",
             ),
             (
                 lambda p, n, o: p + 2 * ((p - o) @ n)[:, None] * n,
@@ -177,9 +174,20 @@ EXERCISES: dict[str, Exercise] = {
                 "This turns single axes round; a leaning plane mixes them: measure along the normal.",
             ),
             (lambda p, n, o: -p, "This is a point reflection: only the part along the normal may change sign."),
+            *(
+                (way, "The origin is added, but was not taken off: measure from it, (points - origin) @ normal.")
+                for way in (
+                    lambda p, n, o: _mirrored(p, n, o) + o,
+                    lambda p, n, o: p - 2 * (p @ n)[:, None] * n + o,
+                )
+            ),
             (
-                lambda p, n, o: p - 2 * ((p - o) @ n),
-                "Distances taken off coordinates: go along the normal, distance[:, None] * normal.",
+                lambda p, n, o: 2 * (o + ((p - o) @ n)[:, None] * n) - p,
+                "This is a half turn about the normal: turn the part along the normal round, and keep the rest.",
+            ),
+            (
+                lambda p, n, o: p - 2 * (((p - o) @ n)[:, None] * n) * [1, 1, 0],
+                "The third coordinate is left out: the normal leans in all three.",
             ),
             (
                 lambda p, n, o: p - 2 * np.linalg.norm(p - o, axis=1)[:, None] * n,

@@ -7,14 +7,15 @@ from itertools import combinations
 import numpy as np
 from scipy import ndimage
 
-from .task import Answer, Exercise, degrees_apart, different_pixels, small_head
+from .task import Answer, Exercise, degrees_apart, different_bools, small_head
 
 
 def _bones():
-    bone = small_head().bone
+    closed = small_head().bone[30].copy()  # a closed ring
+    closed[2:5, 2:5] = True  # a loose piece, met before the ring
     touching = np.zeros((12, 12), bool)
     touching[3:9, :] = touching[:9, 3:9] = True  # left and right: a mask that is rolled meets itself; and the top
-    return [(bone[19],), (bone[12],), (touching,)]
+    return [(small_head().bone[19],), (closed,), (touching,)]
 
 
 def _inner_edge(bone):
@@ -32,13 +33,20 @@ def _without_frame(bone):
     return edge
 
 
+def _one_side_open(bone):
+    """Bone of which exactly one neighbour is no bone."""
+    framed = np.pad(bone, 1)
+    beside = sum(np.roll(framed, step, axis)[1:-1, 1:-1].astype(int) for axis, step in _SIDES)
+    return bone & (beside == 3)
+
+
 def _with_neighbours(bone, join, *sides):
     """Bone whose neighbours at some sides, (axis, step), are not all bone, or not any."""
     framed = np.pad(bone, 1)
     return bone & ~join([np.roll(framed, step, axis)[1:-1, 1:-1] for axis, step in sides])
 
 
-_SIDES = ((0, 1), (0, -1), (1, 1), (1, -1))
+_SIDES = ((0, 1), (0, -1), (1, 1), (1, -1))  # axis, step
 
 
 def _clouds():
@@ -82,7 +90,8 @@ def _by_better_slope(points):
 def _spines():
     angle = np.linspace(0, 1.5 * np.pi, 60)
     arc = 50 * np.column_stack([np.cos(angle), np.sin(angle)])
-    stairs = np.cumsum([[0, 0], [0, 1], [1, 1], [1, 0], [1, 1], [0, 1]], axis=0).astype(float)
+    # the steps differ, and read otherwise from the other end
+    stairs = np.cumsum([[0, 0], [0, 1], [1, 1], [1, 0], [1, 1], [1, 2], [2, 2]], axis=0).astype(float)
     return [(stairs,), (arc,), (arc[::-3] + np.array([9.0, 7.0]),)]
 
 
@@ -94,13 +103,22 @@ EXERCISES: dict[str, Exercise] = {
     "3.1": Exercise(
         cases=_bones,
         right=_inner_edge,
-        answer=Answer("a mask like the one given", unit="pixels", tolerance=0.0, error=different_pixels),
+        answer=Answer("a bool mask like the one given", unit="pixels", tolerance=0.0, error=different_bools),
         mistakes=(
             (lambda b: ndimage.binary_dilation(b) & ~b, "These pixels lie outside the bone; B is part of the bone."),
             (
                 lambda b: ndimage.binary_dilation(b) ^ ndimage.binary_erosion(b),
                 "This band is two pixels wide; keep the bone's own.",
             ),
+            (
+                lambda b: b & ~ndimage.binary_erosion(ndimage.binary_fill_holes(b)),
+                "The inner boundary is missing: do not fill the ring, the brain's place is no bone.",
+            ),
+            (
+                lambda b: _inner_edge(ndimage.label(b)[0] == 1),
+                "This is the boundary of one piece of bone: take all of them.",
+            ),
+            (_one_side_open, "One neighbour that is not bone is enough, but two or three may be: at least one."),
             (lambda b: ndimage.binary_erosion(b), "This is the inside; the boundary is what erosion takes away."),
             (
                 lambda b: b & ~ndimage.binary_erosion(b, border_value=1),
@@ -225,7 +243,15 @@ EXERCISES: dict[str, Exercise] = {
                 lambda p: np.linalg.svd(p - p.mean(axis=1, keepdims=True))[2][0],
                 "This centres each point by itself: the centre is the mean of all, axis=0.",
             ),
-            (lambda p: _parts(p)[2][:, 0], "Directions are the rows of the third array, not its columns: [2][0]."),
+            (
+                lambda p: _parts(p)[2][:, 0],
+                "Directions are the rows of the third array, not its columns: [2][0]. (Or one sign is turned.)",
+            ),
+            (lambda p: abs(_line(p)), "The signs are lost: a line that falls looks like one that rises."),
+            (
+                lambda p: np.linalg.eig(np.cov(p.T))[1][:, 0],
+                "np.linalg.eig does not sort: take the direction of the largest value, or np.linalg.eigh's last.",
+            ),
             (lambda p: _parts(p)[0][0], "The first array has a row for each point; directions are rows of the third."),
             (lambda p: _parts(p)[1], "The second array says how far the points spread; the third has the directions."),
             (lambda p: _parts(p)[2], "These are both directions; return the one of largest spread."),
@@ -258,6 +284,31 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda p: np.linalg.norm(p - p[0], axis=1),
                 "This is the straight distance to the first point, not the way along the curve.",
+            ),
+            (
+                lambda p: _arc_length(p[::-1]),
+                "You count from the last point: the length is that from the first point on.",
+            ),
+            (
+                lambda p: np.sqrt(np.append(0.0, np.cumsum((np.diff(p, axis=0) ** 2).sum(axis=1)))),
+                "This is the root of the sum of all squares: take the root of each step, then add the steps up.",
+            ),
+            (
+                lambda p: np.append(0.0, np.cumsum(np.abs(np.diff(p[:, 0])))),
+                "Rows only: a step is the root of the sum of squares over rows and columns.",
+            ),
+            (
+                lambda p: np.append(0.0, np.cumsum(np.linalg.norm(p - p[0], axis=1)[1:])),
+                "These are distances from the first point, added up; add up the steps from point to point: np.diff.",
+            ),
+            (
+                lambda p: np.append(0.0, np.cumsum(np.trunc(np.linalg.norm(np.diff(p, axis=0), axis=1)))),
+                "The lengths were cut to whole numbers: was the array made of integers?",
+            ),
+            (lambda p: np.linalg.norm(p, axis=1), "These are distances from 0, 0; a step is the difference of two."),
+            (
+                lambda p: _arc_length(np.concatenate([p[:1] - (p[1] - p[0]), p]))[1:],
+                "The first point has a length already: its arc length is 0, and no step leads to it.",
             ),
             (lambda p: _arc_length(p)[1:], "The first point is missing: its arc length is 0."),
             (

@@ -8,20 +8,22 @@ from .task import Answer, Exercise
 
 
 def _records():
-    def entry(plane, status, theta0, n_iter):
-        return {"plane": plane, "status": status, "theta0": theta0, "n_iter": n_iter}
+    def entry(plane, status, theta0, theta1, off_mm):
+        return {"plane": plane, "status": status, "theta0": theta0, "theta1": theta1, "off_mm": off_mm}
 
     slices = [
-        entry(22, "balloon", [14.0, 28.7], [90, 146]),
-        entry(25, "carried", [6.2, 33.4], [0, 0]),
-        entry(20, "hull", [0.0, 0.0], [0, 0]),
-        entry(23, "balloon", [21.3, 27.5], [131, 140]),
-        entry(21, "balloon", [8.5, 12.0], [44, 61]),
-        entry(24, "balloon", [11.0, 11.6], [102, 57]),
-        entry(19, "skipped", [3.4, 41.5], [30, 35]),
+        entry(22, "balloon", [14.0, 28.7], [151.0, 167.2], [-2.1, -0.4]),
+        entry(25, "carried", [6.2, 33.4], [144.0, 171.0], [0.3, 0.2]),
+        entry(20, "hull", [0.0, 0.0], [0.0, 0.0], [-3.5, -3.1]),
+        entry(23, "balloon", [36.3, 27.5], [138.0, 140.1], [-0.9, -1.3]),
+        entry(21, "balloon", [8.5, -2.0], [155.5, 150.3], [-1.6, -2.4]),
+        entry(24, "balloon", [7.0, 11.6], [166.1, 158.0], [-1.2, -0.2]),
+        entry(19, "skipped", [3.4, 41.5], [170.4, 139.0], [-0.1, 0.5]),
+        entry(18, "balloon", [12.0, 31.9], [145.0, 163.0], [-0.7, -0.6]),
     ]
-    # an answer that ignores key or side is right once at most; the smallest of the two sides are in different slices
-    return [(slices, "theta0", 1), (slices, "n_iter", 1), (slices, "n_iter", 0)]
+    # an answer that ignores the key is right once at most; the smallest of the two sides are in different slices; the
+    # last slice counts; some values are all above 100, some all below 0
+    return [(slices, "theta0", 1), (slices, "theta1", 1), (slices, "off_mm", 0)]
 
 
 def _has(entry):
@@ -46,7 +48,7 @@ def _by_plane(slices, key, side):
 
 
 def _arcs():
-    return [(50.0, 75.0), (20.0, 75.0), (70.0, 80.0)]
+    return [(50.0, 75.0), (33.5, 75.0), (70.0, 80.0)]
 
 
 EXERCISES: dict[str, Exercise] = {
@@ -67,6 +69,23 @@ EXERCISES: dict[str, Exercise] = {
                 for out in (("hull",), ("hull", "skipped"), ("hull", "carried"))
             ),
             (
+                lambda s, k, i: _extremes([x[k][i] for x in s if x[k][i] > 0]),
+                "An angle below 0 is a value, and slices without a balloon may have some: ask for the status.",
+            ),
+            (lambda s, k, i: _range(s[:-1], k, i), "The last slice is left out."),
+            (lambda s, k, i: _range(s[1:], k, i), "The first slice is left out."),
+            (
+                lambda s, k, i: (int(np.argmin(_values(s, k, i))), int(np.argmax(_values(s, k, i)))),
+                "These are places in the list, not the values there: min and max, not argmin and argmax.",
+            ),
+            *(
+                (
+                    lambda s, k, i, low=low, high=high: (min([low, *_values(s, k, i)]), max([high, *_values(s, k, i)])),
+                    "A search that starts from a number of your own may end there: start from the first value.",
+                )
+                for low, high in ((np.inf, 0), (1000, 0), (100, 0), (100, -np.inf), (0, 0), (0, -np.inf))
+            ),
+            (
                 lambda s, k, i: tuple(pick([x[k] for x in s if _has(x)])[i] for pick in (min, max)),
                 "min and max of pairs compare the outer side first: take s[key][side] before, not after.",
             ),
@@ -79,7 +98,7 @@ EXERCISES: dict[str, Exercise] = {
             (lambda s, k, i: _range(s, k, 0), "This is the outer side whatever `side` says: take s[key][side]."),
             (lambda s, k, i: _range(s, k, 1), "This is the inner side whatever `side` says: take s[key][side]."),
             (lambda s, k, i: _range(s, "theta0", i), "This is theta0 whatever `key` says: take s[key][side]."),
-            (lambda s, k, i: _range(s, "n_iter", i), "This is n_iter whatever `key` says: take s[key][side]."),
+            (lambda s, k, i: _range(s, "theta1", i), "This is theta1 whatever `key` says: take s[key][side]."),
             (
                 lambda s, k, i: (np.min([x[k] for x in s if _has(x)]), np.max([x[k] for x in s if _has(x)])),
                 "Both sides are thrown together: take s[key][side].",

@@ -6,7 +6,7 @@ import numpy as np
 from scipy import ndimage
 from skimage.morphology import convex_hull_image
 
-from .task import Answer, Exercise, different_bools, different_pixels, small_head
+from .task import Answer, Exercise, different_bools, small_head
 
 _CORNERS = np.ones((3, 3), bool)  # pixels that touch at a corner belong together
 _SIDES = ndimage.generate_binary_structure(2, 1)
@@ -49,8 +49,11 @@ def _dented():
     speck[82, 43:47] = False
     pits = (col >= 33) & (col < 35) & (row >= -6) & (row < 0) | (col >= 35) & (col < 37) & (row >= 0) & (row < 6)
     size = np.bincount(ndimage.label(convex_hull_image(dent) & ~dent)[0].ravel())
+    # a small ring aside, so that the biggest region is neither in the middle nor as large as in the others
+    small = np.zeros((90, 90), bool)
+    small[:45, 45:] = speck[::2, ::2]
     # one dent of two, just enough; both, and no island; a region that holds together at a corner only
-    return [(speck, int(np.sort(size[1:])[-2])), (speck, 10), (dent & ~pits, 20)]
+    return [(speck, int(np.sort(size[1:])[-2])), (small, 6), (dent & ~pits, 20)]
 
 
 def _lost(bone, min_pixels, touching=_CORNERS, whole=convex_hull_image):
@@ -245,13 +248,15 @@ EXERCISES: dict[str, Exercise] = {
     "5.3": Exercise(
         cases=_dented,
         right=_lost,
-        answer=Answer("a mask like the one given", unit="pixels", tolerance=0.0, error=different_pixels),
+        answer=Answer("a bool mask like the one given", unit="pixels", tolerance=0.0, error=different_bools),
         mistakes=(
             (_with_cavity, "The brain's place is in it: drop the biggest region too."),
             (lambda b, m: _with_cavity(b, m, _SIDES), "The brain's place is in it: drop the biggest region too."),
             (lambda b, m: _lost(b, 1), "Small islands are left: drop regions under min_pixels."),
-            (lambda b, m: _lost(b, 10), "A fixed number of pixels? min_pixels is another one each time."),
-            (lambda b, m: _lost(b, 30), "A fixed number of pixels? min_pixels is another one each time."),
+            *(
+                (lambda b, m, n=n: _lost(b, n), "A fixed number of pixels? min_pixels is another one each time.")
+                for n in (10, 20, 30)
+            ),
             (
                 lambda b, m: _lost(b, m, _SIDES),
                 "Pixels that touch at a corner belong together: measure.label counts them so.",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from skimage.morphology import convex_hull_image
 
-from .task import Answer, Exercise, different_pixels, largest_difference
+from .task import Answer, Exercise, different_bools, largest_difference
 
 _LONG = "The normal must have length 1: divide it by its length."
 
@@ -15,13 +15,13 @@ def _pairs():
     found = []
     for normal, point in (
         ([1.0, 0.0, 0.0], [0.0, 0.0, 0.0]),
-        ([0.96, 0.28, 0.0], [2.3, -6.1, 40.0]),
+        (np.array([12.0, -4.0, 3.0]) / 13, [2.3, -6.1, 40.0]),  # signs of both kinds
     ):
         n = np.array(normal)
         found.append((a, a - 2 * ((a - point) @ n)[:, None] * n))
     # many pairs with errors of measurement, which add up to nothing: each pair alone is 2 mm off along every axis
     grid = np.stack(np.meshgrid([40.0, 55.0, 70.0], [-60.0, -20.0, 20.0, 60.0], [-20.0, 20.0, 60.0]), axis=-1)
-    many = grid.reshape(-1, 3)
+    many, n = grid.reshape(-1, 3), np.array([0.96, 0.28, 0.0])
     errors = 2.0 * (-1.0) ** np.arange(len(many))[:, None]
     return [*found, (many, many - 2 * ((many - point) @ n)[:, None] * n + errors)]
 
@@ -105,6 +105,10 @@ EXERCISES: dict[str, Exercise] = {
         ),
         mistakes=(
             (lambda a, b: ((a - b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
+            (
+                lambda a, b: (abs(_plane(a, b)[0]), _plane(a, b)[1]),
+                "The normal has lost its signs: its numbers may be of both.",
+            ),
             (lambda a, b: (a[0] - b[0], (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a[0] + b[0]) / 2), _LONG),
             *_with_point(
@@ -242,7 +246,7 @@ EXERCISES: dict[str, Exercise] = {
     "8.3": Exercise(
         cases=_open_rings,
         right=_lid,
-        answer=Answer("a mask like the ones given", unit="pixels", tolerance=0.0, error=different_pixels),
+        answer=Answer("a bool mask like the ones given", unit="pixels", tolerance=0.0, error=different_bools),
         mistakes=(
             (
                 lambda b, i: convex_hull_image(b) & ~b,

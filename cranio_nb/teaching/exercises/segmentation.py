@@ -7,6 +7,7 @@ from functools import partial
 import numpy as np
 from scipy import ndimage
 
+from ...stages.segmentation import drop_artefacts
 from .task import Answer, Exercise, different_bools, small_head
 
 
@@ -135,17 +136,17 @@ def _rings():
     row, col = np.indices((80, 80)) - 40
     ring = (np.hypot(row, col) < 30) & (np.hypot(row, col) > 22)
     spotted, corners, pockets = ring.copy(), ring.copy(), ring.copy()
-    spotted[14, 38:42] = spotted[40, 64:67] = False
+    spotted[14, 38:42] = spotted[40, 64:67] = spotted[39:42, 14:17] = False  # 4, 3 and 9 pixels
     corners[:4] = True  # bone along a border, with a hole of 4 pixels that is met before all else
     corners[1:3, 5:7] = False
-    corners[12:16, 38:43] = False  # 20 pixels
+    corners[12:16, 38:43] = corners[36:43, 14:17] = False  # 20 and 21 pixels
     corners[34:40, 64:66] = corners[40:46, 66:68] = False  # 12 each, and they share a corner only
-    pockets[14, 38:42] = False
+    pockets[14, 38:42] = pockets[36:43, 14:17] = False
     for border in (np.s_[:4, 37:43], np.s_[-4:, 37:43], np.s_[37:43, :4], np.s_[37:43, -4:]):
         pockets[border] = True
     for border in (np.s_[:2, 39:41], np.s_[-2:, 39:41], np.s_[39:41, :2], np.s_[39:41, -2:]):
         pockets[border] = False
-    return [(spotted, 8), (corners, 20), (pockets, 20)]
+    return [(spotted, 8), (corners, 20), (pockets, 20)]  # each with a hole of one pixel more than that
 
 
 _BORDERS = "What touches any of the four borders is outside: first and last row, first and last column."
@@ -167,6 +168,7 @@ EXERCISES: dict[str, Exercise] = {
                 lambda m: ndimage.binary_fill_holes(_largest(m)),
                 "The largest part, and its cavities with it: filling was not asked for.",
             ),
+            (drop_artefacts, "This also keeps other parts, by their size and place: keep the largest alone."),
             (ndimage.binary_fill_holes, "This fills cavities and drops nothing: label the parts and choose one."),
             (lambda m: _largest(~m), "You labelled ~mask, the background: label the mask itself."),
             (lambda m: m & ~_largest(m), "This drops the largest part and keeps the rest."),
@@ -270,6 +272,10 @@ EXERCISES: dict[str, Exercise] = {
             (
                 partial(_fill_small, structure=np.ones((3, 3))),
                 "Holes that share only a corner are two holes: label the background with 4 neighbours.",
+            ),
+            (
+                lambda m, a: _fill_small(m, a + 1),
+                "Holes a little larger than max_pixels are filled too: it counts pixels, so no + 1, no factor, no mm2.",
             ),
             (lambda m, a: _fill_small(m, a - 1), "A hole of just max_pixels is filled as well: at most means <=."),
             (

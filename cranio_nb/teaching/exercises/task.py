@@ -55,31 +55,6 @@ def largest_difference(answer: ArrayLike, right: ArrayLike) -> float:
     return float(np.abs(a - b).max(initial=0.0))
 
 
-def different_pixels(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
-    """Number of pixels in which two masks differ.
-
-    Parameters
-    ----------
-    answer : array_like
-        Bool, or 0 and 1; other numbers are no mask.
-    right : ndarray of bool
-
-    Returns
-    -------
-    float
-        inf where the answer is no mask of that shape.
-
-    Examples
-    --------
-    >>> different_pixels([1, 0, 1], np.array([True, True, True])), different_pixels([2, 0, 1], np.ones(3, bool))
-    (1.0, inf)
-    """
-    a = np.asarray(answer)
-    if a.shape != right.shape or not np.isin(a, (0, 1)).all():
-        return float("inf")
-    return float(np.count_nonzero(a.astype(bool) ^ right))
-
-
 def different_bools(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
     """Number of pixels in which two masks differ, where only bool will do: `~` of the number 1 is -2.
 
@@ -98,7 +73,10 @@ def different_bools(answer: ArrayLike, right: NDArray[np.bool_]) -> float:
     >>> different_bools([True, False], np.ones(2, bool)), different_bools([1, 1], np.ones(2, bool))
     (1.0, inf)
     """
-    return different_pixels(answer, right) if np.asarray(answer).dtype == bool else float("inf")
+    a = np.asarray(answer)
+    if a.shape != right.shape or a.dtype != bool:
+        return float("inf")
+    return float(np.count_nonzero(a ^ right))
 
 
 def degrees_apart(answer: ArrayLike, right: ArrayLike) -> float:

@@ -8,7 +8,7 @@ from .task import Answer, Exercise, largest_difference
 
 
 def _sizes():
-    return [(6, 2), (9, 3), (5, 1)]
+    return [(6, 2), (9, 4), (5, 1)]
 
 
 def _differences(n, order):
@@ -41,6 +41,12 @@ def _bridge(f, known, order, strength, *, held=True, pulled=True):
 def _weighted(f, known, order, strength):
     d = np.diff(np.eye(len(f)), order, axis=0)
     return np.linalg.solve(strength * np.diag(known.astype(float)) + d.T @ d, np.where(known, f, 0.0))
+
+
+def _with_d_alone(f, known, order, strength):
+    d = np.zeros((len(f), len(f)))
+    d[: len(f) - order] = _differences(len(f), order)
+    return np.linalg.solve(np.diag(known.astype(float)) + strength * d, np.where(known, f, 0.0))
 
 
 def _polynomial(f, known, order, strength):
@@ -113,6 +119,14 @@ EXERCISES: dict[str, Exercise] = {
                 "One order too high: of order 1 are the differences of neighbours themselves.",
             ),
             (lambda n, order: np.diff(np.eye(order), n, axis=0), "n and order are exchanged."),
+            (
+                lambda n, order: _differences(n, order)[:, ::-1],
+                "The columns are in turned order: D @ g would read g backwards.",
+            ),
+            (
+                lambda n, order: _differences(n, order) / order,
+                "Divided by the order: each difference is one of neighbours, and nothing is divided.",
+            ),
             (
                 lambda n, order: np.abs(_differences(n, order)),
                 "The signs are lost: neighbours are taken away from each other, 1, -2, 1.",
@@ -208,6 +222,30 @@ EXERCISES: dict[str, Exercise] = {
                 "W has its ones in the gap: it is 1 where values are known.",
             ),
             (
+                lambda f, known, order, strength: _bridge(f, known, 3, strength),
+                "Always the third order: D has the order that is asked for.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order - 1, strength),
+                "One order too low: D is the difference of just the order that is asked for.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order + 1, strength),
+                "One order too high: D is the difference of just the order that is asked for.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(f, known, order, strength ** (1 / (2 * order))),
+                "The strength is already the whole factor of the energy: no root of it.",
+            ),
+            (
+                _with_d_alone,
+                "D^T D is wanted, not D: the energy is |D g|^2, and its derivative has D twice.",
+            ),
+            (
+                lambda f, known, order, strength: _bridge(f - f[known].mean(), known, order, strength),
+                "The mean was taken off and not put back.",
+            ),
+            (
                 lambda f, known, order, strength: _bridge(f, known, 1, strength),
                 "Always the first order: D has the order that is asked for.",
             ),
@@ -269,6 +307,29 @@ EXERCISES: dict[str, Exercise] = {
             (
                 lambda points, weights, t: _rational(points[::-1], weights[::-1], t),
                 "The curve runs backwards: at t = 0 it is at the first point, so (1 - t)^2 belongs to it.",
+            ),
+            *(
+                (lambda points, weights, t, way=way: _rational(points, way(weights), t), sentence)
+                for way, sentence in (
+                    (np.sqrt, "The weights come in as they are: no root of them."),
+                    (lambda w: np.array([1.0, w[1], 1.0]), "The outer weights count too: they need not be 1."),
+                    (
+                        lambda w: np.array([w[0], np.sqrt(0.5), w[2]]),
+                        "1 / sqrt 2 is the middle weight of a quarter of a circle only: take weights[1].",
+                    ),
+                )
+            ),
+            (
+                lambda points, weights, t: _rational(points, weights, t)[:, ::-1],
+                "x and y are exchanged: the columns stand as those of `points`.",
+            ),
+            (
+                lambda points, weights, t: _rational(points, weights, t / 100),
+                "t runs from 0 to 1 already: it is no percentage.",
+            ),
+            (
+                lambda points, weights, t: np.column_stack([np.interp(2 * t, range(3), points[:, i]) for i in (0, 1)]),
+                "These lie on the straight lines between the points: the curve is their weighted mean.",
             ),
             (lambda points, weights, t: _rational(points, weights**2, t), "The weights come in once, not squared."),
             (

@@ -33,7 +33,7 @@ WRONG = {
         ("return (k * (n - 1)) ** 2 / 8", "goes with k"),
         ("return k * (n - 1) / 2", "goes with 1 / (n - 1)"),
         ("return round(k * (n - 1) ** 2 / 8, 2)", "The number was rounded"),
-        ("return k * (n - 1) ** 2 // 8", "cut by `//`"),
+        ("return k * (n - 1) ** 2 // 8", "by `//`"),
         ("i = (n - 1) // 2; return k * i * (n - i) / 2", "The parabola is i (N - i)"),
         ("i = n / 2; return k * i * (n - 1 - i) / 2", "N counts the steps"),
         ("return k * (n - 1) ** 2 / 8 + 2 / np.sqrt(5) * (0 - k * (n - 1) / 2)", "clamps are in it"),

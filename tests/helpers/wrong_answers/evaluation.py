@@ -71,7 +71,7 @@ WRONG = {
         ("return np.flip(points, axis=0)", "order of the points"),
         ("return points[::-1, ::-1]", "no plane"),
         ("return points[:, ::-1]", "swaps x and z"),
-        ("distance = (points - origin) @ normal; return points - 2 * distance * normal", "distance[:, None]"),
+        ("distance = (points - origin) @ normal; return points - 2 * distance * normal", "one number for each row"),
         ("return points + 2 * np.outer((points - origin) @ normal, normal)", "sign is wrong"),
         ("p = points - origin; return p - 2 * np.outer(p @ normal, normal)", "left there"),
         ("return -points", "This is a point reflection"),
@@ -89,7 +89,7 @@ WRONG = {
         ("return points * -normal", "does not use `origin`"),
         ("return points @ np.diag([-1, 1, 1])", "This mirrors at x = 0"),
         ("return points + origin - 2 * np.outer(points @ normal, normal)", None),
-        ("return points - 2 * ((points - origin) @ normal)", "Distances taken off coordinates"),
+        ("return points - 2 * ((points - origin) @ normal)", "keep it a column"),
         ("return points - 2 * origin", "The function does not use `normal`"),
         (
             "d = np.linalg.norm(points - origin, axis=1); return points - 2 * d[:, None] * normal",

@@ -18,7 +18,7 @@ WRONG = {
             "as they are",
         ),
         ("v = [int(s[key][side]) for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "as they are"),
-        ("v = [s[key][side] for s in slices if s[key][side] > 0]; return min(v), max(v)", "Carried and skipped"),
+        ("v = [s[key][side] for s in slices if s[key][side] > 0]; return min(v), max(v)", "An angle below 0"),
         ("v = [s[key][1 - side] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "side 0"),
         ("v = [s[key][0] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "outer side whatever"),
         ("v = [s[key][1] for s in slices if s['status'] == 'balloon']; return min(v), max(v)", "inner side whatever"),
@@ -27,7 +27,7 @@ WRONG = {
             "whatever `key`",
         ),
         (
-            "v = [s['n_iter'][side] for s in slices if s['status'] == 'balloon']; return min(v), max(v)",
+            "v = [s['theta1'][side] for s in slices if s['status'] == 'balloon']; return min(v), max(v)",
             "whatever `key`",
         ),
         ("v = sum((s[key] for s in slices if s['status'] == 'balloon'), []); return min(v), max(v)", "Both sides"),
