@@ -150,6 +150,20 @@ def remove_method(name: str) -> None:
     _added.pop(name, None)
 
 
+def is_method(name: str) -> bool:
+    """Whether there is a method of a name; other packages are asked last, as that takes longest.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    bool
+    """
+    return name in METHODS or name in _added or name in _offered()
+
+
 def method_names() -> tuple[str, ...]:
     """Names of all methods: the built-in ones, those of other packages, those added by `add_method`.
 

@@ -17,7 +17,7 @@ from ..evaluation.paper_tables import balloon_ranges, count_statuses
 from ..geometry.mesh_check import MeshReport, check_mesh
 from ..grid import AxisOrder
 from ..implant.mass import weigh_implant
-from ..methods.catalogue import default_options, method_names
+from ..methods.catalogue import default_options, is_method
 from ..pipeline.input_digest import case_label
 from ..pipeline.preparation import Prepared
 from ..pipeline.run import RunResult, run_design
@@ -178,7 +178,7 @@ def made_record(made: Prosthesis) -> dict[str, Any]:
         "not_for_clinical_use": True,
         "world": "DICOM LPS, mm",
         "method": made.method,
-        "parameters": (default_options(made.method) if made.method in method_names() else {}) | made.parameters,
+        "parameters": (default_options(made.method) if is_method(made.method) else {}) | made.parameters,
         "slices": slices,
         "slice_counts": count_statuses(slices),
         "balloons": balloon_ranges(slices),

@@ -161,10 +161,13 @@ def outermost_edge(bone: Volume, centre: Array, directions: Array) -> Array:
         at = start[:, None] + length * step[rays].T
         return ndimage.map_coordinates(bone.voxels, at, order=1, mode="grid-constant", output=float) > _HALF
 
-    # the outermost sample in bone
+    # the outermost sample in bone, from where a ray enters the box of the bone on
+    low, high = np.array([(side.start - 1, side.stop) for side in bone.box()], float).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        reach = np.fmax((low - start) / step, (high - start) / step).min(axis=1)
     radius = np.full(len(directions), np.nan)
     for length in np.arange(FAR_MM, NEAR_MM, -_STRIDE_MM):
-        open_rays = np.flatnonzero(np.isnan(radius))
+        open_rays = np.flatnonzero(np.isnan(radius) & (length <= reach))
         radius[open_rays[in_bone(open_rays, length)]] = length
     # the edge between it and the next one outwards, by bisection
     found = np.flatnonzero(np.isfinite(radius))

@@ -9,6 +9,8 @@ further away, are not mistaken for it.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
@@ -110,18 +112,26 @@ def surface_radii(
     outer, inner : ndarray, shape (...)
         mm, between voxels; nan where a ray meets no bone.
     """
-    # samples about the expected surface, a few hundred rays at a time
     rays, level = directions.reshape(-1, 3), expected.ravel()
     field = _field(bone, centre, rays[::8], level[::8])
     offsets = np.arange(-_DEPTH_MM, _HEIGHT_MM, _SAMPLE_MM)
-    radii = np.full((2, len(rays)), np.nan)
-    cells, start, step = _cells(field.voxels), field.to_voxel(centre), field.steps(rays)
-    for some in np.array_split(np.arange(len(rays)), len(rays) // 250 + 1):
-        at = start[:, None, None] + step[some].T[..., None] * (level[some, None] + offsets)
+    cells, start, step = _cells(field.voxels), field.to_voxel(centre), field.steps(rays).T
+    # samples about the expected surface, a few hundred rays at a time
+    last, first = np.empty((2, len(rays)), np.int16)
+    met = np.empty(len(rays), bool)
+    for some in np.array_split(np.arange(len(rays)), len(rays) // 500 + 1):
+        at = start[:, None, None] + step[:, some, None] * (level[some, None] + offsets)
         in_bone = _is_bone(field.voxels, cells, at)
-        ends = [_crossing(field.voxels, at, offsets, *end) for end in _nearest_run(in_bone, offsets)]
-        radii[:, some] = np.where(in_bone.any(axis=1), ends, np.nan)
-    outer, inner = (radii + level).reshape(2, *expected.shape)
+        last[some], first[some] = _nearest_run(in_bone, offsets)
+        met[some] = in_bone.any(axis=1)
+
+    def place(sample: NDArray[np.int16]) -> NDArray[np.float64]:
+        """One sample of each ray, as an index into the field."""
+        return start[:, None] + step * (level + offsets[sample])
+
+    ends = [_crossing(field.voxels, place, offsets, *end) for end in ((last, +1), (first, -1))]
+    radii = np.where(met, ends, np.nan) + level
+    outer, inner = radii.reshape(2, *expected.shape)
     return outer, inner
 
 
@@ -159,10 +169,13 @@ def _agree(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
 
 def _is_bone(field: NDArray, cells: NDArray[np.uint8], at: NDArray) -> NDArray[np.bool_]:
     """Whether a field is above 0.5 at places (3, ...): between neighbours that agree without interpolation."""
-    corner = np.floor(at).astype(np.int32) + 1
+    corner = np.floor(at).astype(np.int32)
+    corner += 1
     for index, n in zip(corner, field.shape, strict=True):
         np.clip(index, 0, n, out=index)
-    cell = cells[tuple(corner)]
+    # one number for each place in the array is looked up faster than three
+    plane, row, col = corner
+    cell = cells.ravel()[(plane * cells.shape[1] + row) * cells.shape[2] + col]
     bone, neither = cell == _BONE, cell == _NEITHER
     bone[neither] = _sampled(field, at[:, neither]) > 0.5
     return bone
@@ -173,31 +186,33 @@ def _sampled(field: NDArray, at: NDArray) -> NDArray[np.float32]:
     return np.asarray(ndimage.map_coordinates(field, at, order=1, mode="constant", cval=0.0, output=np.float32))
 
 
-def _nearest_run(bone: NDArray[np.bool_], offsets: NDArray) -> tuple[tuple[NDArray, int], tuple[NDArray, int]]:
-    """The last and the first sample of the run of bone nearest to 0 on each ray, each with the way out of it.
+def _nearest_run(bone: NDArray[np.bool_], offsets: NDArray) -> tuple[NDArray, NDArray]:
+    """The last and the first sample of the run of bone nearest to 0 on each ray.
 
     Short breaks join.
     """
     n = len(offsets)
-    index = np.arange(n)
+    index = np.arange(n, dtype=np.int16)
     breaks = int(_BREAK_MM / _SAMPLE_MM)
-    none = -(10**6)
+    none = np.int16(-10_000)
     # a run begins at bone that has none before it within a break, and ends where none follows
     before = np.maximum.accumulate(np.where(bone, index, none), axis=1)
-    before = np.concatenate([np.full((len(bone), 1), none), before[:, :-1]], axis=1)
+    before = np.concatenate([np.full((len(bone), 1), none, np.int16), before[:, :-1]], axis=1)
     begins = bone & (index - before > breaks)
     after = np.minimum.accumulate(np.where(bone, index, -none)[:, ::-1], axis=1)[:, ::-1]
-    after = np.concatenate([after[:, 1:], np.full((len(bone), 1), -none)], axis=1)
+    after = np.concatenate([after[:, 1:], np.full((len(bone), 1), -none, np.int16)], axis=1)
     finishes = bone & (after - index > breaks)
     # the run that ends nearest to the expected surface
     last = np.abs(np.where(finishes, offsets, np.inf)).argmin(axis=1)
-    first = np.where(begins & (index <= last[:, None]), index, -1).max(axis=1)
-    return (last, +1), (first, -1)
+    first = np.where(begins & (index <= last[:, None]), index, np.int16(-1)).max(axis=1)
+    return last, first
 
 
-def _crossing(field: NDArray, at: NDArray, offsets: NDArray, end: NDArray, side: int) -> NDArray[np.float64]:
+def _crossing(
+    field: NDArray, place: Callable[[NDArray], NDArray], offsets: NDArray, end: NDArray, side: int
+) -> NDArray[np.float64]:
     """Offset where a field passes 0.5 between a bone sample of each ray and its neighbour on one side."""
-    rays, beside = np.arange(len(end)), np.clip(end + side, 0, len(offsets) - 1)
-    here, there = (_sampled(field, at[:, rays, sample]) for sample in (end, beside))
+    beside = np.clip(end + side, 0, len(offsets) - 1)
+    here, there = (_sampled(field, place(sample)) for sample in (end, beside))
     t = np.clip((here - 0.5) / np.maximum(here - there, 1e-6), 0, 1)
     return np.asarray(offsets[end] + t * side * _SAMPLE_MM * (beside != end))
