@@ -27,6 +27,7 @@ from .side_by_side import side_by_side
 from .time_limit import TookTooLongError, call_within
 from .verdict import Verdict
 
+_POINT = 3  # numbers at most
 LIMIT_S = 10.0
 """Time that a function gets for a case; right answers take a hundredth of a second."""
 STUB = "Nothing here yet: replace the line with NotImplementedError by your own, then run both cells again."
@@ -136,8 +137,8 @@ def _is_text(value: Any) -> bool:
 
 
 def _is_listed(yours: Any, mine: Any) -> bool:
-    """Whether a list or tuple stands for an array of rows, or for a mask; a row of numbers may come as a list."""
-    arrays = isinstance(mine, np.ndarray) and (mine.ndim > 1 or mine.dtype == bool)
+    """Whether a list or tuple stands for an array or a mask; a point or a direction may come as a list."""
+    arrays = isinstance(mine, np.ndarray) and (mine.size > _POINT or mine.dtype == bool)
     return arrays and not isinstance(yours, np.ndarray)
 
 

@@ -27,7 +27,7 @@ METADATA = {
 """Metadata of every notebook: no traces of the machine it was made on."""
 _PICTURE = re.compile(r"\(data:image/[^)]*\)")
 _SET_UP = """# On Colab this installs the package; elsewhere it does nothing. SOURCE is what pip can take:
-# the package's name, a wheel that you uploaded, or "git+" and the project's address.
+# the package's name, a wheel or zip that you uploaded, or "git+" and the project's address.
 SOURCE = "cranio-nb"
 import subprocess, sys
 

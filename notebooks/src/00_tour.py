@@ -85,7 +85,9 @@ print(f"{bone.voxels.mean():.1%} of the voxels are bone")
 # %% [markdown]
 # ## 3. Where is the hole?
 #
-# We stand inside the head and look out. Where a ray meets no bone, there is an opening.
+# We stand inside the head and look out. Where a ray meets no bone, there is an opening. (The rays run through several
+# planes at a slant, and the rim is bevelled: in the first and last of the planes that are named the ring of bone itself
+# may still be closed.)
 
 # %% tags=["nbval-check-output"]
 openings = cn.find_openings(bone)

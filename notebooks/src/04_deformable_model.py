@@ -148,8 +148,8 @@ diagrams.snaxel_forces(90.0, theta, np.pi - theta, pressure=0.062)
 #
 # **Predict, then move, then explain.** The panel begins at the start curve (step 0): press play, or put `step` to its
 # end. (a) With the first preset, the paper's `k`, in which the panel begins: does the curve come to rest above or below
-# the dashed start? (b) Double N at the same `k` (21 -> 41 snaxels, under *more settings*): twice as high, four times,
-# or the same? Set `dt` to 4, for the picture stops after 300 steps. (c) Turn `k` negative. (d) Does the energy fall in
+# the dashed start? (b) Double N at the same `k`: twice as high, four times, or the same? (The preset
+# *41 snaxels, dt = 4* does it, with a larger `dt`, for the picture stops after 300 steps.) (c) Turn `k` negative. (d) Does the energy fall in
 # all of these, and with k = 0.4? (No sliders? Use `panel.set(n=41, dt=4, step=300)` and the like in a new cell; `k` is
 # called `pressure`.)
 
@@ -291,7 +291,7 @@ for chord, made in zip(chords, paper, strict=True):
 # end is held to. The parabola starts with the slope $kN/2$ instead. Next to each end the fourth difference makes up
 # for this: there the curve at rest is the parabola plus $a\,(1 - r^i)$. Two conditions fix $r$ and $a$. At rest
 # tension and rigidity of the added part balance: its second difference equals its fourth. A second difference turns
-# $r^i$ into $(r - 2 + r^{-1})\,r^i$, a fourth does so twice; so this factor equals its own square, and is 1. And the
+# $r^i$ into $(r - 2 + r^{-1})\,r^i$, a fourth does so twice; so this factor equals its own square, and is 1 (with 0 nothing would fade). And the
 # clamp holds the slope across the end, $(c_1 - c_{-1})/2 = m$, with a snaxel $c_{-1}$ thought beyond it:
 #
 # $$r - 2 + r^{-1} = 1,\qquad r = \tfrac{3-\sqrt5}{2} = 0.38,\qquad a\,\tfrac{r^{-1} - r}{2} = m - \tfrac{kN}{2}$$
@@ -634,7 +634,7 @@ check.exercise("4.2", pressure)
 # %% [markdown]
 # **Exercise 4.3.** Bridge the gap. Put it together: start curve, slopes per snaxel at both ends, pressure, `inflate`.
 # Return the curve (n, 2) in the chord frame. It is tried on three gaps of the synthetic head whose tangents are turned
-# by 4 and 8 degrees, as by noise, once with 9 snaxels only. Each snaxel may be 0.2 px from the balloon at
+# by 4 and 8 degrees, as by noise, once with 9 snaxels only. Each snaxel may be 0.07 px from the balloon at
 # rest under one constant pressure, that of its end tangents (exercise 4.2).
 
 

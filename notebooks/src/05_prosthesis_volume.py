@@ -62,8 +62,8 @@ first = max(opening.planes[0] - 2, 0)  # the slices begin two planes below the h
 # (lesson 04, section 3). What the authors meant we cannot know; the preset takes the stronger of the two.
 #
 # The outline goes along the outer curve and *back* along the inner one. Inside it, minus the bone, is the patch.
-# `prosthesis_volume.fill_gap` also asks that a piece reaches from one curve to the other: crumbs that touch only one of
-# them are dropped. The left picture shows all that lies between the curves; in the right one the bone is taken away,
+# `prosthesis_volume.fill_gap` also drops crumbs, pieces that do not reach from one curve to the other, and slivers, about
+# a pixel wide, where a curve grazes the surface of the bone. The left picture shows all that lies between the curves; in the right one the bone is taken away,
 # and what is left is the patch.
 
 # %% tags=["nbval-check-output"]
@@ -80,7 +80,7 @@ outer, inner = one.curves
 region = prosthesis_volume.pixels_between(outer, inner, bone.shape[1:])
 patch = prosthesis_volume.fill_gap(outer, inner, bone.voxels[plane])
 print(
-    f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without bone and crumbs"
+    f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without bone, crumbs and slivers"
 )
 
 # %% tags=["nbval-check-output"]
@@ -167,7 +167,7 @@ if case.truth is not None:
 #
 # (Dice, of lesson 00, says how well the patch and the missing bone overlap: 1 is perfect. HD95: 95 % of the distances
 # between their surfaces are smaller; lesson 07.) Both are poor for a hole whose rim is all there to be seen. It is not
-# the filling that fails: on the whole the curves run inside the true ones. How far? We measure the outer curve against
+# the filling that fails: on the whole the outer curve runs inside the true one. How far? We measure the outer curve against
 # the true one in every second slice, above the true chord and away from its ends. One head is one draw, so we take two
 # more, of another shape and with other noise.
 
@@ -207,11 +207,11 @@ for number, (head, design) in enumerate(zip(heads, papers, strict=True)):
         f"head {number}: inside by {by.mean():.1f} mm on average of {len(by)} slices,", end=" "
     )
     print(f"{middle.mean():.1f} mm in the middle third,", end=" ")
-    print(f"from {by.min():.1f} to {by.max():.1f} mm")
+    print(f"from {by.min():.1f} to {by.max():.1f} (slice {max(below, key=below.get)})")
 
 # %% [markdown]
 # The mean hides the middle of the hole, where the curve runs about 2 mm inside. (The largest value need not lie there:
-# a single bad slice can have it, as one further below.) Section 4 takes apart why.
+# in the first head slice 44 has it, near the top of the hole, a bad one that we shall meet; less than 0 is outside.) Section 4 takes apart why.
 #
 # **Predict, then move, then explain.** The panel starts with the pressure *from the end tangents*; the counts and
 # scores above are those of the paper's constant, which is the other choice (`panel.set(pressure="the paper's constant
@@ -370,7 +370,11 @@ six_alone = np.array([s.assd for s in scores(designs(directions=6, coupling_mm=0
 for n, each, together in ((1, alone, one_way), (6, six_alone, six_ways)):
     for name, mm in (("each slice alone", each), ("tangents shared", together)):
         print(f"{n} direction(s), {name:16}", " ".join(f"{d:.2f}" for d in mm))
-    print("   sharing takes off", *(f"{gain:.2f}" for gain in each - together), "mm")
+    print(
+        "   sharing takes off",
+        *(f"{gain:.2f}" for gain in each - together),
+        "mm, before rounding",
+    )
 
 # %% [markdown]
 # <details>
@@ -410,6 +414,7 @@ check.exercise("5.1", outline)
 
 # %% [markdown]
 # **Exercise 5.2.** The patch of a slice, from the region between the curves and the bone (both masks).
+# Only bone is taken away; crumbs, slivers and holes stay as they are.
 
 
 # %% tags=["solution"]

@@ -104,7 +104,8 @@ print(f"volume: voxels {voxels_cm3:.2f} cm3, raw {raw.volume / 1000:.2f} cm3")
 # ## 2. How far may it move?
 #
 # Between the last voxel inside and the first outside the true surface can be anywhere. So a vertex may move by half a
-# voxel along each axis *without contradicting the data*, and not further. `surface_reconstruction.extract_surface` goes
+# voxel along each axis; further would contradict the data. (A triangle between such vertices can still pass on the
+# wrong side of a voxel's centre here and there.) `surface_reconstruction.extract_surface` goes
 # towards the smoothest surface within these bounds and keeps the volume.
 
 # %% tags=["nbval-check-output"]

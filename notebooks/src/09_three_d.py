@@ -278,9 +278,9 @@ rng = np.random.default_rng(0)
 outer, hole = vault.outer[::2, ::2], vault.hole[::2, ::2]  # every second ray each way
 noisy = [outer + rng.normal(0, 0.2, outer.shape) for _ in range(3)]
 for a, b in ((1.3, 1.8), (8.5, 11)):
-    lengths = {"second_mm": a, "third_mm": b, "mirror_mm": 0}
+    options = {"second_mm": a, "third_mm": b, "mirror_mm": 0}
     ways = [
-        cn.methods.thin_plate.bend(radii, hole, 2 * vault.step_mm, **lengths)[hole]
+        cn.methods.thin_plate.bend(radii, hole, 2 * vault.step_mm, **options)[hole]
         for radii in (outer, *noisy)
     ]
     moved = [np.sqrt(np.mean((way - ways[0]) ** 2)) for way in ways[1:]]
@@ -473,7 +473,7 @@ np.linalg.solve(W + 0 * D.T @ D, W @ draws)
 
 # %% [markdown]
 # The plate of section 3 holds what nothing else holds to the mean radius, very faintly, and so gave *an* answer for
-# a = b = c = 0: a lid with a step all around it.
+# a = b = c = 0: a lid with a step nearly all around it, up at some places and down at others.
 #
 # ## Exercises
 #

@@ -154,7 +154,7 @@ def test_gives_points_for_part_of_the_cases():
 
 def test_says_how_far_off_an_unknown_answer_is_in_its_unit():
     verdict = check.exercise("4.3", lambda length, a, b, n: cubic(length, a, b, n) + np.array([0, 5.0]))
-    assert "px; 0.2 is allowed" in verdict.message
+    assert "px; 0.07 is allowed" in verdict.message
 
 
 def test_an_object_is_called_by_its_own_name():
@@ -177,3 +177,27 @@ def test_sees_a_changed_input():
 def test_names_the_exercises_when_there_is_no_such():
     verdict = check.exercise("9.9", len)
     assert not verdict.passed and "4.2" in str(verdict)
+
+
+def test_a_list_is_no_array_but_may_be_a_point():
+    right = EXERCISES["2.1"].right
+    assert "in a list" in check.exercise("2.1", lambda mask: right(mask).tolist()).message
+    assert "in a list" in check.exercise("9.2", lambda *case: list(EXERCISES["9.2"].right(*case))).message
+    assert check.exercise("1.2", lambda affine, index: list(EXERCISES["1.2"].right(affine, index))).passed
+
+
+def test_single_precision_is_right():
+    for name in ("3.3", "6.2", "9.3"):
+        right = EXERCISES[name].right
+        assert check.exercise(name, lambda *case, right=right: np.asarray(right(*case), np.float32)).passed
+        assert not check.exercise(name, lambda *case, right=right: np.asarray(1.001 * right(*case), np.float32)).passed
+
+
+def test_what_uses_nothing_is_told_so_whatever_it_returns():
+    assert "does not use `a` and `b`" in check.exercise("0.2", lambda a, b: 1.0).message
+    assert "does not use `a` and `b`" in check.exercise("7.1", lambda a, b: 0.0).message
+
+
+def test_the_form_is_told_before_nan():
+    line = check.exercise("0.2", lambda a, b: (2 * (a & b).sum(axis=0)) / (a.sum(axis=0) + b.sum(axis=0))).message
+    assert line.startswith("One number is wanted") and "NaN" in line

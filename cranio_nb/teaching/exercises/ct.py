@@ -45,7 +45,7 @@ def _outside(hu, centre, width, *, below, above, ends):
 
 def _slices():
     hu = np.asarray(small_head().hu, float)[19]
-    return [(hu, 40.0, 80.0), (hu, 300.0, 2000.0), (hu, 600.0, 800.0)]
+    return [(hu, 40.0, 80.0), (hu, 300.0, 2000.0), (hu, 610.0, 75.0)]  # the last one odd
 
 
 def _places():
@@ -116,6 +116,10 @@ EXERCISES: dict[str, Exercise] = {
                 "Multiply by 255: by 256 white is reached before the high end of the window.",
             ),
             (lambda h, c, w: _grey(h, w, c), "centre and width are exchanged."),
+            (
+                lambda h, c, w: np.clip((h - (c - w // 2)) / w, 0, 1) * 255,
+                "`//` cuts to whole numbers: half of an odd width is no whole one, divide by `/`.",
+            ),
             (_wrapped, "uint8 starts again at 0 after 255: clip first, then change the type."),
             (
                 lambda h, c, w: _grey(h, c, 2 * w),

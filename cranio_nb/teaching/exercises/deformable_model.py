@@ -211,7 +211,7 @@ EXERCISES: dict[str, Exercise] = {
         answer=Answer(
             "an array (n, 2) of (along, out) from one end of the gap to the other",
             unit="px",
-            tolerance=0.2,
+            tolerance=0.07,
             error=_px_off,
             shows=(np.asarray, "px"),
         ),

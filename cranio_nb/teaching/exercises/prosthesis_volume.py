@@ -37,8 +37,14 @@ def _outline_error(answer, right):
 
 
 def _regions():
-    bone = small_head().bone
-    return [(ndimage.binary_dilation(small_head().implant[p], iterations=2), bone[p]) for p in (13, 17, 21)]
+    found = [
+        (ndimage.binary_dilation(small_head().implant[p], iterations=2), small_head().bone[p]) for p in (13, 17, 21)
+    ]
+    region, bone = (mask.copy() for mask in found[1])
+    # a crumb beside the patch, and a hole in the bone within the region: both stay
+    bone[60:67, 60:67] = region[60:67, 60:67] = region[2, 2:5] = True
+    bone[63, 63] = False
+    return [found[0], (region, bone), found[2]]
 
 
 def _dented():
@@ -203,6 +209,19 @@ EXERCISES: dict[str, Exercise] = {
                 "This also holds the whole rest of the skull: it is either, not the one without the other.",
             ),
             (lambda r, b: r & b, "This is just the part that must go."),
+            *(
+                (way, "Nothing is dropped here: bone alone is taken away, and crumbs stay.")
+                for way in (
+                    lambda r, b: (
+                        ndimage.label(r & ~b)[0] == np.bincount(ndimage.label(r & ~b)[0].ravel())[1:].argmax() + 1
+                    ),
+                    lambda r, b: ndimage.binary_opening(r & ~b),
+                )
+            ),
+            (
+                lambda r, b: r & ~ndimage.binary_fill_holes(b),
+                "The holes of the bone were filled first, and what lies in them is not bone.",
+            ),
             (lambda r, b: r | b, "This is the repaired slice; the patch is what is new in it."),
             (lambda r, b: b & ~r, "Turned round: this is bone outside the region."),
             (

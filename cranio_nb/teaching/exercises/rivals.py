@@ -7,6 +7,7 @@ from skimage.morphology import convex_hull_image
 
 from .task import Answer, Exercise, different_bools, largest_difference
 
+_UNIT = 1e-5  # by which a length may differ from 1, in single precision too
 _LONG = "The normal must have length 1: divide it by its length."
 
 
@@ -55,6 +56,8 @@ def _either_way(way, sentence):
 
 def _plane_error(answer, right):
     """How far the mirror images of a few points lie apart, mm."""
+    if abs(np.linalg.norm(np.asarray(answer[0], float)) - 1) > _UNIT:
+        return float("inf")
     points = np.array([[0.0, 0.0, 0.0], [50.0, 0.0, 0.0], [0.0, 50.0, 0.0], [0.0, 0.0, 50.0]])
     images = [
         points - 2 * ((points - np.asarray(p, float)) @ np.asarray(n, float))[:, None] * np.asarray(n, float)
@@ -110,6 +113,7 @@ EXERCISES: dict[str, Exercise] = {
                 "The normal has lost its signs: its numbers may be of both.",
             ),
             (lambda a, b: (a[0] - b[0], (a + b).mean(axis=0) / 2), _LONG),
+            (lambda a, b: (_each_unit(a, b).mean(axis=0), (a + b).mean(axis=0) / 2), _LONG),
             (lambda a, b: (a[0] - b[0], (a[0] + b[0]) / 2), _LONG),
             *_with_point(
                 lambda a, b: a.mean(axis=0),

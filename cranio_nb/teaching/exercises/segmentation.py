@@ -277,7 +277,10 @@ EXERCISES: dict[str, Exercise] = {
                 lambda m, a: _fill_small(m, a + 1),
                 "Holes a little larger than max_pixels are filled too: it counts pixels, so no + 1, no factor, no mm2.",
             ),
-            (lambda m, a: _fill_small(m, a - 1), "A hole of just max_pixels is filled as well: at most means <=."),
+            (
+                lambda m, a: _fill_small(m, a - 1),
+                "A hole of just max_pixels is filled as well: at most means <=, and pixels are counted, not mm2.",
+            ),
             (
                 partial(_fill_small, shift=1),
                 "bincount(...)[1:] begins with label 1: each size went to the label before.",

@@ -24,7 +24,7 @@ def _gaps():
     x = np.linspace(-1, 1, 41)
     known = np.abs(x) > 0.35
     bumpy = 70 - 9 * x**2 + 0.4 * np.sin(25 * x)
-    shifted = np.abs(x - 0.2) > 0.5
+    shifted = (np.abs(x - 0.2) > 0.5) & (np.abs(x + 0.6) > 0.08)  # two gaps, with bone between them
     return [
         (np.where(known, 70 - 9 * x**2, 0.0), known, 3, 0.1),
         (np.where(known, bumpy, 0.0), known, 2, 50.0),

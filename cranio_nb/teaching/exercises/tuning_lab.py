@@ -62,7 +62,9 @@ def _together(table):
 def _trials():
     """Dice of heads (rows) with settings (columns), in which the best setting hinges on single heads."""
     rng = np.random.default_rng(9)
-    cases = [(0.9 + 0.05 * rng.standard_normal(shape),) for shape in ((4, 6), (5, 9), (3, 4))]
+    cases = [
+        (0.9 + 0.05 * rng.standard_normal(shape),) for shape in ((4, 6), (9, 5), (3, 4))
+    ]  # more heads than settings, too
     cases[2] = (np.array([[0.95, 0.80, 0.90, 0.70], [0.70, 0.94, 0.88, 0.60], [0.80, 0.70, 0.92, 0.96]]),)
     return cases
 

@@ -112,7 +112,7 @@ def _most_stops(control: Control, wanted: set[Any]) -> int:
 
 
 def wanted_values(panel: Panel, control: Control, text: str) -> set[Any]:
-    """Values that must be among the drawn ones: those shown first, those of the presets, those that a text names.
+    """Values that must be drawn: those shown first and near them, those of the presets, those that a text names.
 
     Parameters
     ----------
@@ -130,6 +130,8 @@ def wanted_values(panel: Panel, control: Control, text: str) -> set[Any]:
     found |= {values[control.name] for values in panel.presets.values() if control.name in values}
     if isinstance(control, Slider):
         found |= {float(hit) for hit in re.findall(_PAIR.format(control.name), text)}
+        at = control.stops.index(control.taken(panel.values[control.name]))
+        found |= set(control.stops[max(at - control.near, 0) : at + control.near + 1])
     return {control.taken(value) for value in found}
 
 
@@ -201,7 +203,7 @@ def thinned(slider: Slider, n: int, wanted: set[float]) -> tuple[float, ...]:
 
 
 def presets_on(axes: Sequence[Axis], panel: Panel) -> dict[str, Mapping[str, Any]]:
-    """The presets that can be gone to with these axes alone.
+    """The presets that can be gone to with these axes alone; the start is what the lesson shows.
 
     Parameters
     ----------
@@ -216,9 +218,8 @@ def presets_on(axes: Sequence[Axis], panel: Panel) -> dict[str, Mapping[str, Any
     """
     moved = {axis.control.name for axis in axes}
     settings: set[str] = set().union(*(axis.presets for axis in axes))
-    start = {name: control.value for name, control in panel.controls.items()}
     found: dict[str, Mapping[str, Any]] = {}
-    for name, values in ({START: start} | panel.presets).items():
+    for name, values in ({START: panel.values} | panel.presets).items():
         kept = {other: value for other, value in values.items() if other in moved}
         if name in settings:
             found[name] = kept | {SETTING: name}

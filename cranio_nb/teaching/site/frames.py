@@ -39,8 +39,9 @@ class Frames:
         The caption of each setting.
     off : tuple of tuple of str
         Controls without effect at each setting.
-    tops : tuple of dict of str to int
-        By name of the axis, the last place worth going to at each setting, where a picture moves the end of a slider.
+    tops : tuple of dict of str to tuple of (int, float)
+        By name of the axis, the last place worth going to at each setting and the value there, where a picture moves
+        the end of a slider.
     files : dict of str to bytes
         WebP by name, in the order of their first use.
     """
@@ -49,7 +50,7 @@ class Frames:
     names: tuple[str, ...]
     lines: tuple[str, ...]
     off: tuple[tuple[str, ...], ...]
-    tops: tuple[dict[str, int], ...]
+    tops: tuple[dict[str, tuple[int, float]], ...]
     files: dict[str, bytes]
 
     @property
@@ -90,13 +91,14 @@ def draw_frames(panel: Panel, axes: Sequence[Axis]) -> Frames:
     return Frames(tuple(axes), tuple(names), tuple(lines), tuple(off), tuple(tops), files)
 
 
-def _tops(view: View, axes: Sequence[Axis]) -> dict[str, int]:
-    """The first place at or beyond each end that a view sets: what lies beyond an end is drawn as that end."""
+def _tops(view: View, axes: Sequence[Axis]) -> dict[str, tuple[int, float]]:
+    """The first place at or beyond each end that a view sets, and the end: what lies beyond it is drawn as the end."""
     ends = view.limits or {}
-    moved = (axis for axis in axes if axis.control.name in ends)
-    return {
-        axis.control.name: min(bisect_left(axis.stops, ends[axis.control.name]), len(axis.stops) - 1) for axis in moved
-    }
+    found = {}
+    for axis in axes:
+        if (end := ends.get(axis.control.name)) is not None:
+            found[axis.control.name] = min(bisect_left(axis.stops, end), len(axis.stops) - 1), end
+    return found
 
 
 def _views(panel: Panel, axes: Sequence[Axis]) -> Iterator[View]:

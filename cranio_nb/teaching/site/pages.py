@@ -12,6 +12,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from ...errors import InputRefused
+from .downloads import EXERCISES, PROJECT, write_exercises, write_project
 
 API = {
     "Nouns": ("volume", "mesh", "curves", "opening", "prosthesis", "errors"),
@@ -29,6 +30,11 @@ TEXTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "LICENSE", "CITATION.cf
 """Files of the project that the site holds beside its docs."""
 _BINDER = "https://mybinder.org/v2/gh/{repository}/HEAD?urlpath={path}"
 _COLAB = "https://colab.research.google.com/github/{repository}/blob/main/{path}"
+
+_GET = f"""
+Here is the whole project: {{download}}`{PROJECT} <downloads/{PROJECT}>`. Unpack it; its folder is what is called
+a clone below. The students' copies of the lessons alone: {{download}}`{EXERCISES} <downloads/{EXERCISES}>`.
+"""
 
 
 def write_pages(project: Path, out: Path, lessons: Sequence[str]) -> None:
@@ -63,8 +69,12 @@ def write_pages(project: Path, out: Path, lessons: Sequence[str]) -> None:
         "Reference": ["api/index"],
         "Project": ["CONTRIBUTING", "CHANGELOG"],
     }
+    (out / "downloads").mkdir()
+    write_project(project, out / "downloads" / PROJECT)
+    write_exercises(project, out / "downloads" / EXERCISES)
     trees = "\n\n".join(_tree(title, names) for title, names in parts.items())
-    (out / "index.md").write_text(f"{(project / 'README.md').read_text('utf-8')}\n{trees}\n", "utf-8")
+    before, heading, after = (project / "README.md").read_text("utf-8").partition("## Two commands\n")
+    (out / "index.md").write_text(f"{before}{heading}{_GET}{after}\n{trees}\n", "utf-8")
 
 
 def lesson_head(name: str, repository: str) -> str:
@@ -90,7 +100,8 @@ def lesson_head(name: str, repository: str) -> str:
     path = f"notebooks/exercises/{name}.ipynb"
     text = (
         f"Work in {{download}}`the copy for students <../{path}>`, or take {{download}}`this lesson with all answers "
-        f"<../notebooks/{name}.ipynb>`."
+        f"<../notebooks/{name}.ipynb>`. (If a browser shows it as text instead: right-click, *Save link as*; or take "
+        f"{{download}}`all copies for students <../downloads/{EXERCISES}>`.)"
     )
     if repository:
         binder = _BINDER.format(repository=repository, path=quote(f"lab/tree/{path}", safe=""))

@@ -47,6 +47,8 @@ def panel_html(panel: Panel, frames: Frames, name: str, folder: str) -> str:
         HTML, without an empty line: Markdown would end it there.
     """
     height, width = panel.view.rgb.shape[:2]
+    moved = {axis.control.name for axis in frames.axes}
+    titles = [control.label for name, control in panel.controls.items() if name not in moved]
     text = _template().render(
         id=name,
         alt=panel.alt,
@@ -54,6 +56,7 @@ def panel_html(panel: Panel, frames: Frames, name: str, folder: str) -> str:
         picture=f"{folder}/{frames.names[frames.start]}",
         width=width,
         height=height,
+        still=", ".join(titles),
         data=_data(panel, frames, folder),
     )
     return "\n".join(line for line in text.splitlines() if line.strip())
@@ -89,7 +92,7 @@ def _data(panel: Panel, frames: Frames, folder: str) -> str:
         "pictures": [place[name] for name in frames.names],
         "lines": frames.lines,
         "off": [[number[name] for name in off if name in number] for off in frames.off],
-        "tops": [[[number[name], place] for name, place in tops.items()] for tops in frames.tops],
+        "tops": [[[number[name], *top] for name, top in tops.items()] for tops in frames.tops],
     }
     return json.dumps(found, ensure_ascii=False, separators=(",", ":")).replace("<", "\\u003c")
 

@@ -38,6 +38,8 @@ class Slider:
     ahead : int, optional
         How many of its stops a page without a kernel draws ahead, beside those that presets and text name; as many as
         there is room for when not given.
+    near : int
+        How many stops to each side of the first value are drawn ahead in any case.
     """
 
     name: str
@@ -52,6 +54,7 @@ class Slider:
     player: bool = False
     expert: bool = False
     ahead: int | None = None
+    near: int = 0
 
     @property
     def stops(self) -> tuple[float, ...]:

@@ -93,7 +93,7 @@ def balloon(
     )
     by_hand = {"preset": PRESETS[0]}
     presets = {"k = 0.4": by_hand | {"pressure": 0.4}, "k = -0.062": by_hand | {"pressure": -0.062}}
-    presets |= {"twice the snaxels": {"n": 41, "dt": 4.0}}
+    presets |= {"41 snaxels, dt = 4": {"n": 41, "dt": 4.0}}
     return Panel(
         controls, lambda step, **values: _view(scene, run(*values.values()), values, step), alt=alt, presets=presets
     )

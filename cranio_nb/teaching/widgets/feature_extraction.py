@@ -49,7 +49,7 @@ def features(bone: Volume, plane: int, *, opening: Volume | None = None, case: L
     """
     part = Slices(bone, opening, case)
     controls = (
-        Slider("plane", f"slice (0 to {bone.shape[0] - 1})", 0, bone.shape[0] - 1, plane, ahead=4),
+        Slider("plane", f"slice (0 to {bone.shape[0] - 1})", 0, bone.shape[0] - 1, plane, ahead=4, near=3),
         Slider("skip_mm", "skip: left out at the cut", 0, 20, 4.5, 0.5, unit="mm"),
         Slider("reach_mm", "reach: fitted after that", 1, 40, 10, 0.5, unit="mm"),
     )

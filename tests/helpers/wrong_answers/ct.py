@@ -6,6 +6,10 @@ STEPS = "s = np.linalg.norm(affine[:3, :3], axis=0)"
 # what students write, and words of the hint that they should get
 WRONG = {
     "1.1": [
+        ("low = centre - width // 2; return np.clip((hu - low) / width, 0, 1) * 255", "half of an odd width"),
+        ("return np.clip((hu - centre + width / 2) / width * 256, 0, 255)", "by 256 white is reached"),
+        ("return np.clip((hu - width + centre / 2) / centre, 0, 1) * 255", "exchanged"),
+        ("return (np.clip((hu - centre + width / 2) / width, 0, 1) * 255).tolist()", "in a list"),
         ("return 255 * (hu - centre + width / 2) / width", "clip"),
         ("return np.clip((hu - centre) / width, 0, 1) * 255", "starts at"),
         ("return np.clip((hu - centre) / width + 0.5, 0, 1)", "0 to 1"),
@@ -43,6 +47,14 @@ WRONG = {
         ("return np.clip(hu - (centre - width / 2), 0, 255)", "Divide by width"),
     ],
     "1.2": [
+        ("p = affine[:3, :3] @ index + affine[:3, 3]; return p * [-1, -1, 1]", "signs turned"),
+        (
+            (
+                "return [affine[0, 2] * index[2] + affine[0, 3], affine[1, 1] * index[1] + affine[1, 3], affine[2, "
+                "0] * index[0] + affine[2, 3]]"
+            ),
+            "Spacings alone",
+        ),
         ("return affine[:3, :3].dot(index)", "origin"),
         ("return (affine @ np.append(index[::-1], 1))[:3]", "turn it round"),
         ("return index @ affine[:3, :3] + affine[:3, 3]", "transposed"),
@@ -72,6 +84,17 @@ WRONG = {
         ("return np.diag(affine)[:3] * index + affine[:3,3]", "Spacings alone"),
     ],
     "1.3": [
+        (
+            (
+                "d = np.round(np.diff(np.sort(positions @ normal)), 3); "
+                "v, n = np.unique(d, return_counts=True); return v[n.argmax()]"
+            ),
+            None,
+        ),
+        ("d = np.sort(np.diff(np.sort(positions @ normal))); return d[len(d) // 2]", "mean of the two in the middle"),
+        ("return str(np.median(np.diff(np.sort(positions @ normal))))", "returns text"),
+        ("return np.median(np.diff(np.sort(positions @ np.abs(normal))))", "drops signs of the normal"),
+        ("return np.array([np.median(np.diff(np.sort(positions @ normal)))])", "stands in an array"),
         ("z = sorted(positions[:, 2]); return np.median(np.diff(z))", "tilted"),
         ("return np.median(np.diff(positions @ normal))", "any order"),
         ("return positions[1, 2] - positions[0, 2]", "any order"),

@@ -14,6 +14,7 @@ UNIT = "np.array([[np.cos(t), np.sin(t)] for t in (theta0, theta1)])"
 # what students write, and words of the hint that they should get
 WRONG = {
     "4.1": [
+        ("i = (n - 1) // 2; return k / 2 * i * (n - 1 - i)", None),
         ("return k * n ** 2 / 8", "N = n - 1"),
         ("return k * n * (n - 1) / 8", "both times"),
         ("return k * (n - 1) ^ 2 / 8", "A power is written"),

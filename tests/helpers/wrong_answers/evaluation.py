@@ -64,6 +64,15 @@ WRONG = {
         ("return np.linalg.norm(a.mean(0) - b.mean(0))", None),
     ],
     "7.2": [
+        ("return np.array([points[i] - 2 * ((points[i] - origin) @ normal) * normal for i in range(3)])", "form"),
+        (
+            (
+                "out = points.copy(); "
+                "out[:, :2] -= 2 * ((points - origin)[:, :2] @ normal[:2])[:, None] * normal[:2]; "
+                "return out"
+            ),
+            None,
+        ),
         ("return points - np.outer((points - origin) @ normal, normal)", "twice as far"),
         ("return points - 2 * np.outer(points @ normal, normal)", "origin given"),
         ("return points * [-1, 1, 1]", "x = 0"),

@@ -7,6 +7,9 @@ PARTS = "h = len(points)"
 # what students write, and words of the hint that they should get
 WRONG = {
     "3.1": [
+        ("return bone & ~ndimage.binary_erosion(ndimage.binary_fill_holes(bone))", "inner boundary is missing"),
+        ("one = ndimage.label(bone)[0] == 1; return one & ~ndimage.binary_erosion(one)", "one piece of bone"),
+        ("return (bone & ~ndimage.binary_erosion(bone)).astype(int)", "as numbers"),
         ("return ndimage.binary_dilation(bone) & ~bone", "outside the bone"),
         ("return ndimage.binary_dilation(bone) & ~ndimage.binary_erosion(bone)", "two pixels"),
         ("return bone & ~ndimage.binary_erosion(bone, np.ones((3, 3)))", "cross"),
@@ -47,6 +50,8 @@ WRONG = {
         ("return bone & ndimage.binary_dilation(~bone)", "At the edge of the image there is boundary"),
     ],
     "3.2": [
+        ("p = points - points.mean(axis=0); return np.abs(np.linalg.svd(p)[2][0])", "signs are lost"),
+        ("return np.linalg.eig(np.cov(points.T))[1][:, 0]", "does not sort"),
         ("a, b = np.polyfit(points[:, 0], points[:, 1], 1); return np.array([1, a])", "along a row"),
         ("a, b = np.polyfit(points[:, 1], points[:, 0], 1); return np.array([a, 1])", "along a column"),
         ("d = points[-1] - points[0]; return d / np.linalg.norm(d)", "to the last"),
@@ -96,6 +101,14 @@ WRONG = {
         ("return np.linalg.eig(points.T @ points)[1][:, 0]", None),
     ],
     "3.3": [
+        (
+            "p = points[::-1]; return np.r_[0, np.cumsum(np.linalg.norm(np.diff(p, axis=0), axis=1))]",
+            "from the last point",
+        ),
+        (
+            "d = np.diff(points, axis=0); return np.sqrt(np.r_[0, np.cumsum((d**2).sum(axis=1))])",
+            "root of the sum of all squares",
+        ),
         ("return np.arange(len(points))", "counts points"),
         ("return np.hypot(*(points - points[0]).T)", "straight"),
         ("return np.cumsum(np.hypot(*np.diff(points, axis=0).T))", "first point is missing"),

@@ -3,6 +3,15 @@
 # what students write, and words of the hint that they should get
 WRONG = {
     "10.1": [
+        ("v = [s[key][side] for s in slices[:-1] if s['status'] == 'balloon']; return min(v), max(v)", "last slice"),
+        (
+            "v = [s[key][side] for s in slices if s['status'] == 'balloon']; return min([*v, 100]), max([*v, 0])",
+            "starts from a number",
+        ),
+        (
+            "v = [s[key][side] for s in slices if s['status'] == 'balloon']; return str(min(v)), str(max(v))",
+            "returns text",
+        ),
         ("v = [s[key][side] for s in slices]; return min(v), max(v)", "no balloon"),
         ("v = [s[key][side] for s in slices if s['status'] != 'hull']; return min(v), max(v)", "Carried and skipped"),
         (
@@ -74,6 +83,7 @@ WRONG = {
         ("v = [s[key][side] for s in slices if s['plane'] > 21]; return min(v), max(v)", None),
     ],
     "10.2": [
+        ("return np.degrees(np.arcsin(chord // 2 / radius))", None),
         ("return np.arcsin(chord / (2 * radius))", "radians"),
         ("return np.degrees(np.arctan(chord / 2 / radius))", "sine"),
         ("return np.degrees(np.arcsin(chord / radius))", "Half the chord"),

@@ -40,6 +40,13 @@ WRONG = {
         ("return np.unique(np.concatenate([outer, inner]), axis=0)", None),
     ],
     "5.2": [
+        (
+            (
+                "p = region & ~bone; l, n = measure.label(p, return_num=True); "
+                "return l == 1 + np.bincount(l.ravel())[1:].argmax()"
+            ),
+            None,
+        ),
         ("return region", "Bone is still"),
         ("return region != bone", "rest of the skull"),
         ("return region & bone", "must go"),

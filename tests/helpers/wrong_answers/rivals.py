@@ -3,6 +3,11 @@
 # what students write, and words of the hint that they should get
 WRONG = {
     "8.1": [
+        ("d = (a - b).sum(axis=0); return np.abs(d) / np.linalg.norm(d), (a + b).mean(axis=0) / 2", "lost its signs"),
+        (
+            "d = a - b; return (d / np.linalg.norm(d, axis=1, keepdims=True)).mean(axis=0), (a + b).mean(axis=0) / 2",
+            "length 1",
+        ),
         ("return a[0] - b[0], (a[0] + b[0]) / 2", "length 1"),
         ("return np.mean(a - b, axis=0), np.mean(a + b, axis=0) / 2", "length 1"),
         ("n = a[0] - b[0]; return n / np.linalg.norm(n), a.mean(axis=0)", "half-way"),
@@ -60,6 +65,7 @@ WRONG = {
         ),
     ],
     "8.2": [
+        ("return str(h * (3 * a**2 + h**2) / (6 * a**2))", "returns text"),
         ("return h", "the largest"),
         ("return h / 2", "exact volume"),
         ("return 2 / 3 * h", "in a slice"),

@@ -30,6 +30,11 @@ def holes(*borders, structure="None", compare="<=", sizes="s", given="mask"):
 # what students write, and words of the hint that they should get
 WRONG = {
     "2.1": [
+        (
+            "l, n = ndimage.label(mask); s = np.bincount(l.ravel()); s[0] = 0; return (l == s.argmax()).tolist()",
+            "in a list",
+        ),
+        ("return np.ones(mask.shape, bool)", "Every place is True"),
         ("labels, n = ndimage.label(mask); return labels == 1", "met first"),
         ("l, n = ndimage.label(mask); return l == np.bincount(l.ravel()).argmax()", "background"),
         ("return mask", "Nothing was dropped"),
@@ -115,6 +120,28 @@ WRONG = {
         ),
     ],
     "2.2": [
+        (
+            (
+                "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()) <= max_pixels + 1; s[0] = False; "
+                "s[np.concatenate([l[0], l[-1], l[:, 0], l[:, -1]])] = False; return mask | s[l]"
+            ),
+            "a little larger",
+        ),
+        (
+            (
+                "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()) <= 2 * max_pixels; s[0] = False; "
+                "s[np.concatenate([l[0], l[-1], l[:, 0], l[:, -1]])] = False; return mask | s[l]"
+            ),
+            "a little larger",
+        ),
+        (
+            (
+                "l, n = ndimage.label(~mask); s = np.bincount(l.ravel()) * 0.81 <= max_pixels; "
+                "s[0] = False; s[np.concatenate([l[0], l[-1], l[:, 0], l[:, -1]])] = False; "
+                "return mask | s[l]"
+            ),
+            "a little larger",
+        ),
         ("return ndimage.binary_fill_holes(mask)", "brain"),
         ("return mask.copy()", "No hole"),
         (loop("range(1, n)", "i not in at and size <= max_pixels"), "The last hole is missing"),

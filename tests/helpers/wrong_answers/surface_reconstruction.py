@@ -72,6 +72,7 @@ WRONG = {
         ("return len(vertices)", "The function does not use `faces`"),
     ],
     "6.2": [
+        ("return (index * spacing).astype(str)", "returns text"),
         ("return (index - index.min(axis=0)) * spacing", "count from the first position"),
         ("return index", "still voxels"),
         ("return index * spacing[::-1]", "turn it round"),

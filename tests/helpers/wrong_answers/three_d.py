@@ -7,6 +7,13 @@ BASIS = "B = np.column_stack([(1 - t) ** 2, 2 * t * (1 - t), t**2])"
 # what students write, and words of the hint that they should get
 WRONG = {
     "9.1": [
+        (
+            (
+                "return {1: np.diff(np.eye(n), 1, axis=0), 2: np.diff(np.eye(n), 2, axis=0), 3: np.diff(np.eye(n), "
+                "3, axis=0)}[order]"
+            ),
+            "KeyError",
+        ),
         ("return np.diff(np.eye(n), n=order)", "exchanged"),
         ("d = np.eye(n)[1:] - np.eye(n)[:-1]; return d**order", "difference of differences"),
         ("d = np.eye(n - order, n, k=1) - np.eye(n - order, n); return d**order", "difference of differences"),
@@ -95,6 +102,13 @@ WRONG = {
         ((f"{SPLINE}; return np.where(known, f, 0)"), "These are the data alone"),
     ],
     "9.3": [
+        (
+            (
+                "B = np.column_stack([(1 - t) ** 2, 2 * t * (1 - t), t**2]) * np.sqrt(weights); "
+                "return B @ points / B.sum(axis=1, keepdims=True)"
+            ),
+            "no root",
+        ),
         (f"{BASIS}; return B @ points", "parabola"),
         (f"{BASIS}; return (B * weights) @ points", "Divide by"),
         (f"{BASIS}; return (B * weights) @ points / weights.sum()", "changes along"),

@@ -32,6 +32,14 @@ def test_a_thinned_slider_keeps_its_ends_and_what_is_wanted(last, n, player):
     assert len(stops) <= n + 1
 
 
+def test_stops_near_the_first_one_are_drawn_where_a_slider_says_so():
+    shown = panel(Slider("plane", "slice", 0, 63, 33, ahead=4, near=3))
+    (axis,) = axes_of(shown, "", 100)
+    assert set(axis.stops) == {0, 21, 42, 63} | set(range(30, 37))
+    (axis,) = axes_of(shown.set(plane=1), "", 100)
+    assert set(axis.stops) == {0, 21, 42, 63, 33} | set(range(5))
+
+
 def test_a_film_has_its_close_stops_at_the_beginning():
     stops = thinned(Slider("step", "step", 0, 300, 0, player=True), 10, set())
     gaps = np.diff(stops)

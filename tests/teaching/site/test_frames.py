@@ -82,7 +82,7 @@ def test_a_slider_ends_at_the_first_stop_that_shows_its_end():
     panel = widgets.Panel((Slider("last", "last", 2, 6, 6), Slider("step", "step", 0, 6, 0)), draw, alt="Grey.")
     last, step = panel.controls.values()
     frames = draw_frames(panel, (Axis(last, (2, 3, 6), 2), Axis(step, (0, 2, 4, 6), 0)))
-    assert [frames.tops[4 * i]["step"] for i in range(3)] == [1, 2, 3]
+    assert [frames.tops[4 * i]["step"] for i in range(3)] == [(1, 2), (2, 3), (3, 6)]
     for i, end in enumerate((2, 3, 6)):
-        at = frames.tops[4 * i]["step"]
+        at, _ = frames.tops[4 * i]["step"]
         assert frames.lines[4 * i + at] == f"step {end} of {end}"

@@ -50,7 +50,7 @@
       const places = this.settled(asked);
       const at = this.index(places);
       this.places = places;
-      this.state.limits = Object.fromEntries(this.data.tops[at].map(([i, top]) => [controls[i].name, controls[i].stops[top]]));
+      this.state.limits = Object.fromEntries(this.data.tops[at].map(([i, , end]) => [controls[i].name, end]));
       this.state.values = Object.fromEntries(controls.map(({ name, stops }, i) => [name, stops[places[i]]]));
       this.state.off = this.data.off[at].map((i) => controls[i].name);
       this.state.caption = this.data.lines[at];

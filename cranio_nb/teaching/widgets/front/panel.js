@@ -36,7 +36,8 @@ function sliderRow(control, model, move) {
   const range = make("input", { type: "range", min: 0, step: 1, aria: { label: title } });
   const box = make("input", { type: "text", inputMode: "decimal", aria: { label: `${title}, typed` } });
   const heard = control.slow ? "change" : "input";
-  const text = () => String(stops[range.value]);
+  let end; // the highest value within reach, where the picture moves it
+  const text = () => String(end !== undefined && range.value === range.max ? end : stops[range.value]);
   range.addEventListener("input", () => {
     box.value = text();
     range.setAttribute("aria-valuetext", `${text()} ${control.unit}`.trim());
@@ -44,17 +45,18 @@ function sliderRow(control, model, move) {
   range.addEventListener(heard, () => move({ [control.name]: stops[range.value] }));
   box.addEventListener("change", () => {
     const value = Number(box.value.replace(",", "."));
-    if (box.value.trim() && Number.isFinite(value)) range.value = nearest(stops, value);
+    if (box.value.trim() && Number.isFinite(value)) range.value = value >= end ? range.max : nearest(stops, value);
     range.dispatchEvent(new Event("input"));
     if (heard === "change") range.dispatchEvent(new Event("change"));
   });
   const show = (value, top, off) => {
-    range.max = top === undefined ? stops.length - 1 : nearest(stops, top);
+    end = top;
+    range.max = top === undefined ? stops.length - 1 : stops.findIndex((stop) => stop >= top);
     range.disabled = box.disabled = off;
     if (range.matches(":active")) return; // a hand holds it
     range.value = nearest(stops, value);
-    if (document.activeElement !== box) box.value = text();
-    range.setAttribute("aria-valuetext", `${text()} ${control.unit}`.trim());
+    if (document.activeElement !== box) box.value = off ? "" : text(); // what has no effect says nothing
+    range.setAttribute("aria-valuetext", off ? "no effect" : `${text()} ${control.unit}`.trim());
   };
   const nodes = [make("div", { className: "row" }, make("span", {}, title), box), range];
   if (control.player) nodes.push(player(control, model, range, move));
