@@ -147,11 +147,11 @@ diagrams.snaxel_forces(90.0, theta, np.pi - theta, pressure=0.062)
 # and a rising one is no fault; $\lVert dc\rVert$ is what counts.
 #
 # **Predict, then move, then explain.** The panel begins at the start curve (step 0): press play, or put `step` to its
-# end. (a) With the first preset, the paper's `k`, in which the panel begins: does the curve come to rest above or below
-# the dashed start? (b) Double N at the same `k`: twice as high, four times, or the same? (The preset
-# *41 snaxels, dt = 4* does it, with a larger `dt`, for the picture stops after 300 steps.) (c) Turn `k` negative. (d) Does the energy fall in
-# all of these, and with k = 0.4? (No sliders? Use `panel.set(n=41, dt=4, step=300)` and the like in a new cell; `k` is
-# called `pressure`.)
+# end. (a) With the paper's `k`, as the panel begins: does the curve come to rest above or below the dashed start? (b)
+# Double N at the same `k`: twice as high, four times, or the same? (The button *41 snaxels, dt = 4* does it, with a
+# larger `dt`, for the picture stops after 300 steps; then press *as at the start*.) (c) Turn `k` negative. (d) Does the
+# energy fall in all of these, and with k = 0.4? (No sliders? Use `panel.set(n=41, dt=4, step=300)` and the like in a
+# new cell; `k` is called `pressure`.)
 
 # %% tags=["nbval-check-output"]
 panel = widgets.balloon(outer, inside, background=bone.voxels[plane], truth=truth, px=case.px)
