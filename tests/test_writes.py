@@ -46,6 +46,7 @@ REASONS = {
         [
             *(("teaching/site/build.py", call) for call in ("copytree", "mkdir", "rmtree", "unlink", "write_bytes")),
             *(("teaching/site/pages.py", call) for call in ("copytree", "mkdir", "write_text")),
+            *(("teaching/site/downloads.py", call) for call in ("ZipFile", "writestr")),
             *(("teaching/site/panel_html.py", call) for call in ("write_bytes", "write_text")),
             *(("teaching/site/slides.py", call) for call in ("copytree", "mkdir", "write_bytes", "write_text")),
         ],

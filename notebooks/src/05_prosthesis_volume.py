@@ -79,9 +79,8 @@ plane = one.plane + first
 outer, inner = one.curves
 region = prosthesis_volume.pixels_between(outer, inner, bone.shape[1:])
 patch = prosthesis_volume.fill_gap(outer, inner, bone.voxels[plane])
-print(
-    f"plane {plane}: {region.sum()} px between the curves, {patch.sum()} px without bone, crumbs and slivers"
-)
+print(f"plane {plane}: {region.sum()} px between the curves,", end=" ")
+print(f"{patch.sum()} px without bone, crumbs and slivers")
 
 # %% tags=["nbval-check-output"]
 fig, (left, right) = pictures.slices(2, bone, around=[outer, inner], height=4.6, width=7.0)

@@ -194,8 +194,7 @@ for name, one in {"our design": seen.score, f"columns, shifted by {best}": s}.it
 # same head with its sound half made wider (about 15 seconds):
 
 # %% tags=["nbval-check-output"]
-# the image as it is, not bent to the rim
-found = cn.design(bone, openings, method="reflection", fit_rim=False)
+found = cn.design(bone, openings, method="reflection", fit_rim=False)  # not bent to the rim
 plane = found.record["symmetry"]
 print(f"the plane is turned by {plane['angle_deg']:.1f} degrees against the columns")
 cols, middle = np.arange(bone.shape[2]), bone.to_voxel(plane["point"])[2]
@@ -208,9 +207,7 @@ for percent in (0, 2, 4, 6):
     s = cn.score(found.patch, truth, skull)
     ends = f"HD95 {s.hd95:.2f}, mean {s.assd:.2f} mm"
     moved = found.record["symmetry"]["offset_mm"] - plane["offset_mm"]
-    print(
-        f"sound half {percent} % wider: Dice {s.dice:.3f}, {ends}, plane moved {moved:.2f} mm"
-    )
+    print(f"sound half {percent} % wider: Dice {s.dice:.3f}, {ends}, plane by {moved:.2f} mm")
 
 # %% [markdown]
 # Two errors were in the plain mirror, and they are of different kinds.

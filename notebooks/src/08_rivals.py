@@ -112,10 +112,13 @@ for name, (one, skull, opening, closed) in holes.items():
     print(f"{name:12} {a:5.0f} x {b:2.0f} {depth:9.1f} mm {s.dice:9.3f} {s.hd95:6.2f} mm")
 deepest = against_truth.measure_against(sheet, true, bone).distances["outer"].max()
 print(f"this hole: the hull lies {deepest:.1f} mm from the true outer side at most")
-# the sphere through the true outer side: |p|^2 = 2 c . p + (R^2 - |c|^2), linear in c and the bracket
+
+# %% tags=["nbval-check-output"]
+# the sphere through the true outer side: |p|^2 = 2 c . p + (R^2 - |c|^2), linear in c and ()
 p = true.surface(cn.mesh.OUTER).vertices
-unknown = np.linalg.lstsq(np.column_stack([2 * p, np.ones(len(p))]), (p**2).sum(axis=1))[0]
-print(f"it fits a sphere of {np.sqrt(unknown[3] + (unknown[:3] ** 2).sum()):.0f} mm")
+table = np.column_stack([2 * p, np.ones(len(p))])
+*middle, rest = np.linalg.lstsq(table, (p**2).sum(axis=1))[0]
+print(f"the true outer side fits a sphere of {np.sqrt(rest + np.square(middle).sum()):.0f} mm")
 
 # %% [markdown]
 # So the same hull that fails across our hole will do for a burr hole (HD95 0.90 mm, one pixel), on each of three heads.

@@ -344,9 +344,8 @@ for degree in range(0, 20, 2):
         for h, b, o in zip(heads, bones, holes, strict=True)
     ]
     own[degree] = np.array(seen)
-    print(
-        f"degree {degree:2}: Dice {own[degree].mean():.3f}, spread {own[degree].std(ddof=1):.3f}"
-    )
+    spread = own[degree].std(ddof=1)
+    print(f"degree {degree:2}: Dice {own[degree].mean():.3f}, spread {spread:.3f}")
 
 # %% [markdown]
 # <details>
