@@ -35,6 +35,16 @@ QUICK = [
     "tests/methods/test_design.py::test_a_turned_and_moved_header_turns_and_moves_the_mesh",
 ]
 """What solves, fits and iterates; no real scans, so that nothing is skipped anywhere."""
+_PROBE = """
+import numpy as np, scipy.linalg
+from threadpoolctl import threadpool_info
+for kind in (np.float32, np.float64):
+    for n in (2, 3, 7, 64, 300):
+        a = np.eye(n, dtype=kind) + np.arange(n * n, dtype=kind).reshape(n, n) / n**3
+        for linalg in (np.linalg, scipy.linalg):
+            a @ a, a @ a[0], a[0] @ a[0], linalg.solve(a, a[0]), linalg.svd(a), linalg.eigh(a + a.T)
+print(threadpool_info()[0].get("architecture"))
+"""
 
 
 def main() -> int:
@@ -48,12 +58,17 @@ def main() -> int:
 
 
 def available_kernels() -> list[str]:
-    """The first of `KERNELS` that this processor has: another one is not taken, or OpenBLAS takes its own instead."""
-    probe = "import numpy; from threadpoolctl import threadpool_info as t; print(t()[0].get('architecture'))"
+    """The first of `KERNELS` that this processor has.
+
+    Another one is not taken, OpenBLAS takes its own instead, or it is taken and stops at its first instruction that the
+    processor lacks: so each is put to work.
+    """
     found = []
     for kernel in KERNELS:
-        told = subprocess.run([sys.executable, "-c", probe], env=environment(kernel, 1), capture_output=True, text=True)
-        if told.stdout.strip() == kernel and len(found) < N_KERNELS:
+        told = subprocess.run(
+            [sys.executable, "-c", _PROBE], env=environment(kernel, 1), capture_output=True, text=True
+        )
+        if told.returncode == 0 and told.stdout.strip() == kernel and len(found) < N_KERNELS:
             found.append(kernel)
     return found
 

@@ -4,6 +4,7 @@ import importlib
 import os
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -49,3 +50,14 @@ def test_every_quick_test_is_there(kernels):
     for test in kernels.QUICK:
         path, _, name = test.partition("::")
         assert (ROOT / path).is_file() and f"def {name.partition('[')[0]}" in (ROOT / path).read_text()
+
+
+def test_a_kernel_that_stops_at_its_work_is_not_taken(kernels, monkeypatch):
+    """OpenBLAS takes a kernel by name on a processor that lacks its instructions, and then dies of it."""
+
+    def run(command, env, **how):
+        kernel = env["OPENBLAS_CORETYPE"]
+        return SimpleNamespace(returncode=-4 if kernel == "SkylakeX" else 0, stdout=f"{kernel}\n")
+
+    monkeypatch.setattr(kernels.subprocess, "run", run)
+    assert kernels.available_kernels() == ["Haswell", "Sandybridge", "Nehalem"]
