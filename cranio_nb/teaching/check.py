@@ -27,7 +27,7 @@ from .side_by_side import side_by_side
 from .time_limit import TookTooLongError, call_within
 from .verdict import Verdict
 
-_POINT = 3  # numbers at most
+_POINT = 3  # numbers of a point or a direction at most, which may come as a list
 LIMIT_S = 10.0
 """Time that a function gets for a case; right answers take a hundredth of a second."""
 STUB = "Nothing here yet: replace the line with NotImplementedError by your own, then run both cells again."
