@@ -5,7 +5,7 @@ Frames: the mesh in world mm (LPS), the patch in voxel (plane, row, col).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -69,6 +69,15 @@ class Prosthesis:
         faces = self.mesh.faces[self.sides == side]
         used, compact = np.unique(faces, return_inverse=True)
         return Mesh(self.mesh.vertices[used], compact.reshape(-1, 3))
+
+    def cropped(self) -> Prosthesis:
+        """The same with no more of its grid than the box of its patch.
+
+        Returns
+        -------
+        Prosthesis
+        """
+        return self if self.patch is None else replace(self, patch=self.patch.crop(self.patch.box()))
 
 
 @dataclass(frozen=True)

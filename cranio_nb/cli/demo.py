@@ -25,21 +25,25 @@ def demo(out: Path, size: str, head: str) -> None:
       cranio-nb demo
       cranio-nb demo --size tiny --out demo_tiny
     """
-    from data_synth import head_case
-    from data_synth.files import write_case
+    from ..output.painter import Painter
 
-    from ..output import comparison_folder
-    from ..output.design_folder import FILES, run_and_draw, write_outputs
-    from ..output.staging import staged
-    from ..pipeline.preparation import prepare
-    from .console import print_result, progress_bar
+    with Painter() as painter:  # first of all: it loads what it draws with while the scan is made
+        from data_synth import head_case
+        from data_synth.files import write_case
 
-    names = (*CASE, *FILES)
-    check_writes(out, names, {}, results=comparison_folder.FILES, n_bytes=128_000_000 if size == "full" else 32_000_000)
-    with progress_bar() as progress, staged(out, names) as part:
-        progress("synthetic CT", 0.0)
-        write_case(part, head_case(head, size, "unilateral", 0))
-        case = prepare(part / "ct", truth=part / "truth.nii.gz", progress=progress)
-        result, drawn = run_and_draw(case, progress=progress)
-        write_outputs(result, part, drawn, progress)
-    print_result(result, out)
+        from ..output import comparison_folder
+        from ..output.design_folder import FILES, run_and_draw, write_outputs
+        from ..output.staging import staged
+        from ..pipeline.preparation import prepare
+        from .console import print_result, progress_bar
+
+        names = (*CASE, *FILES)
+        n_bytes = 128_000_000 if size == "full" else 32_000_000
+        check_writes(out, names, {}, results=comparison_folder.FILES, n_bytes=n_bytes)
+        with progress_bar() as progress, staged(out, names) as part:
+            progress("synthetic CT", 0.0)
+            write_case(part, head_case(head, size, "unilateral", 0))
+            case = prepare(part / "ct", truth=part / "truth.nii.gz", progress=progress)
+            result, page = run_and_draw(painter, case, progress=progress)
+            write_outputs(result, part, page, progress)
+        print_result(result, out)

@@ -53,21 +53,24 @@ def design(
       cranio-nb design scans/head_ct --threshold 300 --planes 40:75 --out out
       cranio-nb design scans/head_ct --params options.json --out out
     """
-    from ..output.design_folder import FILES, run_and_draw, write_outputs
-    from ..output.staging import staged
-    from ..pipeline.preparation import prepare
-    from .console import print_result, progress_bar
+    from ..output.painter import Painter
 
-    # everything that can be refused without reading the scan comes first
-    check_asked(method, preset)
-    options, between = read_params(method, params), parse_planes(planes)
-    options |= {} if prior is None else {"prior": str(prior)}
-    learned = options.get("prior")
-    reads = {"scan": scan, "truth": truth, "params": params, "prior": Path(learned) if learned else None}
-    check_writes(out, FILES, reads)
-    with progress_bar() as progress, opening_checked():
-        case = prepare(scan, opening=opening, planes=between, truth=truth, progress=progress, **how_read)
-        result, drawn = run_and_draw(case, method=method, preset=preset, progress=progress, **options)
-        with staged(out, FILES) as part:
-            write_outputs(result, part, drawn, progress)
-    print_result(result, out)
+    with Painter() as painter:  # first of all: it loads what it draws with while the scan is read
+        from ..output.design_folder import FILES, run_and_draw, write_outputs
+        from ..output.staging import staged
+        from ..pipeline.preparation import prepare
+        from .console import print_result, progress_bar
+
+        # everything that can be refused without reading the scan comes first
+        check_asked(method, preset)
+        options, between = read_params(method, params), parse_planes(planes)
+        options |= {} if prior is None else {"prior": str(prior)}
+        learned = options.get("prior")
+        reads = {"scan": scan, "truth": truth, "params": params, "prior": Path(learned) if learned else None}
+        check_writes(out, FILES, reads)
+        with progress_bar() as progress, opening_checked():
+            case = prepare(scan, opening=opening, planes=between, truth=truth, progress=progress, **how_read)
+            result, page = run_and_draw(painter, case, method=method, preset=preset, progress=progress, **options)
+            with staged(out, FILES) as part:
+                write_outputs(result, part, page, progress)
+        print_result(result, out)

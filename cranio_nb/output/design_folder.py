@@ -31,20 +31,20 @@ from .nifti_files import write_nifti
 from .staging import staged
 
 if TYPE_CHECKING:
-    from .pages import Shot
-
-    Drawn = Future[dict[str, list[Shot]]]
+    from .painter import Painter
 
 FILES = ("prosthesis.stl", "patch.nii.gz", "design.json", "report.html")
 """What a run leaves in its folder."""
 _LIBRARIES = ("numpy", "scipy", "scikit-image", "pydicom", "nibabel", "pynrrd", "trimesh", "manifold3d")
 
 
-def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
-    """Design and measure; what is drawn is prepared meanwhile, and drawn while there are measures and files to make.
+def run_and_draw(painter: Painter, case: Prepared, **options: Any) -> tuple[RunResult, Future[str]]:
+    """Design and measure; what is shown is drawn meanwhile.
 
     Parameters
     ----------
+    painter : Painter
+        At work until the page that it promises is fetched.
     case : Prepared
     **options
         As for `run_design`.
@@ -52,29 +52,23 @@ def run_and_draw(case: Prepared, **options: Any) -> tuple[RunResult, Drawn]:
     Returns
     -------
     RunResult
-    Future
-        Promise of its `design_pictures.shape_shots`, for `write_outputs`.
+    Future of str
+        Its page, for `write_outputs`.
 
     Raises
     ------
     InputRefused, NoOpening
         As `run_design`.
     """
-    from .painter import Painter
-
-    drawn: list[Drawn] = []
-    painter = Painter(case)
-    try:
-        result = run_design(case, designed=lambda made: drawn.append(painter.draw(made)), **options)
-    finally:
-        painter.close()
-    return result, drawn[0]
+    painter.look_at(case)
+    result = run_design(case, designed=painter.draw, **options)
+    return result, painter.page(result)
 
 
 def write_outputs(
     result: RunResult,
     folder: Path,
-    drawn: Drawn,
+    page: Future[str],
     progress: Callable[[str, float], None] | None = None,
 ) -> None:
     """Write the `FILES` of a run.
@@ -84,8 +78,8 @@ def write_outputs(
     result : RunResult
     folder : Path
         Must be there; usually the one from `staging.staged`.
-    drawn : Future
-        Promise of its pictures, from `run_and_draw`.
+    page : Future of str
+        Its page, from `run_and_draw`.
     progress : callable, optional
         Called with (step, fraction of the whole).
 
@@ -94,16 +88,14 @@ def write_outputs(
     CannotWrite
         If the mesh is not a solid, or a file cannot be written.
     """
-    from .design_page import measure_shots, report_page
-
     progress = progress or (lambda step, done: None)
     progress("writing", 0.85)
-    # packing and the disk leave the processor to the digests and to the pictures, which are drawn meanwhile
+    # packing and the disk leave the processor to the record and to the pictures, which are drawn meanwhile
     with ThreadPoolExecutor(1) as beside:
         shapes = beside.submit(_write_shapes, result.prosthesis, folder, result.mesh, result.case.load.order)
         files.write_json(folder / "design.json", design_record(result))
         progress("report", 0.92)
-        files.write_text(folder / "report.html", report_page(result, drawn.result() | measure_shots(result)))
+        files.write_text(folder / "report.html", page.result())
         shapes.result()  # or what kept it from being written
     progress("done", 1.0)
 

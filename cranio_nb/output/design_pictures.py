@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -58,23 +56,9 @@ def shape_shots(case: Prepared, vault: Mesh, made: Prosthesis) -> dict[str, list
     dict of str to list of Shot
         "views", "cuts" and "slices".
     """
-    made = cropped(made)  # once for all
+    made = made.cropped()  # no picture looks beyond its box
     views = view_shots(case, vault, made.mesh)
     return {"views": views, "cuts": cut_shots(case, made), "slices": slice_shots(case, made)}
-
-
-def cropped(made: Prosthesis) -> Prosthesis:
-    """A prosthesis with no more than the box of its patch: no picture looks beyond that.
-
-    Parameters
-    ----------
-    made : Prosthesis
-
-    Returns
-    -------
-    Prosthesis
-    """
-    return made if made.patch is None else replace(made, patch=made.patch.crop(made.patch.box()))
 
 
 def view_shots(case: Prepared, vault: Mesh, prosthesis: Mesh) -> list[Shot]:

@@ -1,107 +1,183 @@
-"""Who draws the pictures of a page while the rest of a run goes on: a thread, or a process of its own for large scans.
+"""Who makes the page of a run while the rest of it goes on: a process of its own, or a thread.
 
-The process costs a second of another processor before it draws; the thread shares one with the design.
+The process loads what it draws with while the scan is read; where there is one processor only, a thread shares it.
 """
 
 from __future__ import annotations
 
+import os
 import pickle
 import subprocess
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import replace
 from io import BytesIO
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
-from ..drawing import figures
-from ..opening import Opening
-from ..pipeline.preparation import Prepared
-from ..prosthesis import Prosthesis
-from .design_pictures import cropped, shape_shots, vault_of
-from .pages import Shot, shot
+if TYPE_CHECKING:  # what draws is loaded where it draws, so that the process can be started before anything else
+    from ..mesh import Mesh
+    from ..pipeline.preparation import Prepared
+    from ..pipeline.run import RunResult
+    from ..prosthesis import Prosthesis
+    from .pages import Shot
 
-_LARGE = 2**24  # voxels from which a process pays
+    Shots = dict[str, list[Shot]]
+
 _CUT_SHORT = (EOFError, pickle.UnpicklingError)
-_PROGRAM = "from cranio_nb.output.painter import draw_for_parent; draw_for_parent()"
+_PROGRAM = "from cranio_nb.output.painter import paint_for_parent; paint_for_parent()"
 
-Shots = dict[str, list[Shot]]
+Known = Mapping[str, Any]
 
 
 class Painter:
-    """Draws the pictures of a run that need no measures.
+    """Draws what a run shows as soon as it is there, and makes its page; a context, in which it works.
 
-    Parameters
-    ----------
-    case : Prepared
-        What is drawn before there is a prosthesis is drawn at once.
+    Examples
+    --------
+    >>> from cranio_nb.pipeline.preparation import prepare
+    >>> from cranio_nb.pipeline.run import run_design
+    >>> from data_synth import phantom_case
+    >>> from data_synth.files import write_case
+    >>> write_case("head", phantom_case("tiny", "burr_hole", 0))
+    >>> with Painter() as painter:
+    ...     case = prepare("head/ct")
+    ...     painter.look_at(case)
+    ...     result = run_design(case, method="hull", designed=painter.draw)
+    ...     page = painter.page(result).result()
+    >>> page[:15]
+    '<!DOCTYPE html>'
     """
 
-    def __init__(self, case: Prepared) -> None:
-        self._case = case
-        self._thread = ThreadPoolExecutor(1)
-        self._process = _start() if case.scan.voxels.size >= _LARGE else None
-        self._vault = self._thread.submit(self._begin)
+    def __init__(self) -> None:
+        self._process = _start() if _n_processors() > 1 else None
+        self._thread = ThreadPoolExecutor(1)  # all that follows is done here, one after the other
+        self._working = True
 
-    def draw(self, made: Prosthesis) -> Future[Shots]:
-        """Ask for the pictures of a prosthesis, once.
+    def __enter__(self) -> Painter:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        # what was ordered and not yet fetched is wanted no more
+        self._working = False
+        if self._process is not None:
+            self._process.kill()
+        self._thread.shutdown(cancel_futures=True)
+        if self._process is not None:
+            _end(self._process)
+
+    def look_at(self, case: Prepared) -> None:
+        """Begin with what can be drawn before there is a prosthesis.
+
+        Parameters
+        ----------
+        case : Prepared
+        """
+        self._case = case
+        self._seen = self._thread.submit(self._see, case)
+
+    def draw(self, made: Prosthesis) -> None:
+        """Draw all pictures that need no measures.
 
         Parameters
         ----------
         made : Prosthesis
+            Designed for the case that was looked at.
+        """
+        self._drawn = self._thread.submit(self._draw, made)
+
+    def page(self, result: RunResult) -> Future[str]:
+        """Make the page of a run.
+
+        Parameters
+        ----------
+        result : RunResult
+            Of the prosthesis that is drawn.
 
         Returns
         -------
-        Future of dict of str to list of Shot
-            As of `design_pictures.shape_shots`.
+        Future of str
+            As `design_page.report_page` makes it.
         """
-        return self._thread.submit(self._drawn, made)
+        return self._thread.submit(self._page, result)
 
-    def close(self) -> None:
-        """Take no more orders; what was ordered is drawn to its end, and nothing else goes on."""
-        if self._process is not None:
-            self._thread.submit(self._end, self._process)
-        self._thread.shutdown(wait=False)
+    def _see(self, case: Prepared) -> Mesh | None:
+        """Show the case to the process, or make the skull of the views here."""
+        # of the openings that stay open the size is shown; a sheet of each is as large as the scan, and is not
+        unseen = {f"left open {one.number}": one.opening for one in case.left_open if one.size}
+        if self._process is not None and self._tell(case, unseen):
+            _ = case.digests  # made now, beside the design
+            return None
+        from .design_pictures import vault_of
 
-    def _begin(self) -> Any:
-        if self._process is None:
-            figures.new_figure(1.0, 1.0)  # loads matplotlib
-            return vault_of(self._case)
-        # without what is not drawn: a sheet of each opening that stays open is as large as the scan
-        return self._tell(replace(self._case, left_open=(), truth=None))
+        return vault_of(case)
 
-    def _drawn(self, made: Prosthesis) -> Shots:
-        if self._process is None:
-            return shape_shots(self._case, self._vault.result(), made)
-        if self._vault.result() and self._tell(cropped(made), self._case.openings):
-            assert self._process.stdout is not None
+    def _draw(self, made: Prosthesis) -> Shots | None:
+        """Show the prosthesis to the process, or draw it here."""
+        vault = self._seen.result()
+        if vault is None and self._tell(made.cropped(), _known(self._case)):
+            return None
+        from .design_pictures import shape_shots, vault_of
+
+        return shape_shots(self._case, vault or vault_of(self._case), made) if self._working else {}
+
+    def _page(self, result: RunResult) -> str:
+        """The page that the process makes of a run; where it died, or was never there, the page is made here."""
+        shots = self._drawn.result()
+        if shots is None and self._tell(result, _known(self._case, result.prosthesis)):
+            assert self._process is not None and self._process.stdout is not None
             with suppress(*_CUT_SHORT):
-                shots: Shots = pickle.load(self._process.stdout)
-                return shots
-        # it died, or was killed for want of memory: here it takes longer
-        return shape_shots(self._case, vault_of(self._case), made)
+                page: str = pickle.load(self._process.stdout)
+                return page
+        from .design_page import measure_shots, report_page
+        from .design_pictures import shape_shots, vault_of
 
-    def _tell(self, what: Prepared | Prosthesis, known: Sequence[Opening] = ()) -> bool:
+        if not self._working:
+            return ""
+        if shots is None:  # the process was killed, perhaps for want of memory
+            shots = shape_shots(self._case, vault_of(self._case), result.prosthesis)
+        return report_page(result, shots | measure_shots(result))
+
+    def _tell(self, what: Prepared | Prosthesis | RunResult, known: Known | None = None) -> bool:
         """Send to the process; whether it was there."""
         assert self._process is not None and self._process.stdin is not None
         try:
-            _send(self._process.stdin, what, known)
+            _send(self._process.stdin, what, known or {})
         except OSError:
             return False
         return True
 
-    @staticmethod
-    def _end(process: subprocess.Popen[bytes]) -> None:
-        process.kill()  # what was ordered has come
-        for stream in (process.stdin, process.stdout):
-            assert stream is not None
-            with suppress(OSError):  # it died before it read all
-                stream.close()
-        process.wait()
+
+def paint_for_parent() -> None:
+    """In the process that draws: take case, prosthesis and result from standard input, answer on standard output.
+
+    It ends with the process that started it, whose end closes both.
+    """
+    from ..drawing import figures
+    from .design_page import measure_shots, report_page
+    from .design_pictures import shape_shots, vault_of
+    from .pages import page_template, shot
+
+    # what takes time to load, while the scan is read
+    shot(figures.colour_bar_figure(1.0, ""), alt="", caption="")
+    page_template("design_page.html")
+    with suppress(*_CUT_SHORT):  # there is nothing more to draw
+        case: Prepared = _received(sys.stdin.buffer)
+        vault, _ = vault_of(case), case.digests
+        made: Prosthesis = _received(sys.stdin.buffer, _known(case))
+        shots = shape_shots(case, vault, made)
+        result: RunResult = _received(sys.stdin.buffer, _known(case, made))
+        page = report_page(result, shots | measure_shots(result))
+        pickle.dump(page, sys.stdout.buffer, protocol=pickle.HIGHEST_PROTOCOL)
 
 
-def _send(stream: IO[bytes], what: Any, known: Sequence[Opening]) -> None:
+def _known(case: Prepared, made: Prosthesis | None = None) -> Known:
+    """What both processes have, by names that both give it: there it stays the same thing."""
+    openings = {f"opening {i}": one for i, one in enumerate(case.openings)}
+    return openings if made is None else openings | {"case": case, "made": made}
+
+
+def _send(stream: IO[bytes], what: Any, known: Known) -> None:
     """Write an object: its large arrays first, from where they lie, without a copy of them."""
     large: list[pickle.PickleBuffer] = []
     rest = BytesIO()
@@ -113,51 +189,54 @@ def _send(stream: IO[bytes], what: Any, known: Sequence[Opening]) -> None:
     stream.flush()
 
 
-def _received(stream: IO[bytes], known: Sequence[Opening] = ()) -> Any:
+def _received(stream: IO[bytes], known: Known | None = None) -> Any:
     """What `_send` wrote."""
     large = [bytearray(n_bytes) for n_bytes in pickle.load(stream)]
     for part in large:
         if stream.readinto(part) < len(part):  # type: ignore[attr-defined]
             raise EOFError
-    return _Receiver(stream, known, large).load()
+    return _Receiver(stream, known or {}, large).load()
 
 
 class _Sender(pickle.Pickler):
-    """Openings that the other process has are named by their index, so that there too they are the same ones."""
+    """What the other process has is named only, so that there too it is the same thing."""
 
-    def __init__(self, stream: IO[bytes], known: Sequence[Opening], large: list[pickle.PickleBuffer]) -> None:
+    def __init__(self, stream: IO[bytes], known: Known, large: list[pickle.PickleBuffer]) -> None:
         super().__init__(stream, pickle.HIGHEST_PROTOCOL, buffer_callback=large.append)
-        self._index = {id(opening): index for index, opening in enumerate(known)}
+        self._name = {id(one): name for name, one in known.items()}
 
-    def persistent_id(self, what: Any) -> int | None:
-        return self._index.get(id(what))
+    def persistent_id(self, what: Any) -> str | None:
+        return self._name.get(id(what))
 
 
 class _Receiver(pickle.Unpickler):
-    def __init__(self, stream: IO[bytes], known: Sequence[Opening], large: Sequence[bytearray]) -> None:
+    def __init__(self, stream: IO[bytes], known: Known, large: list[bytearray]) -> None:
         super().__init__(stream, buffers=large)
         self._known = known
 
-    def persistent_load(self, index: int) -> Opening:
-        return self._known[index]
+    def persistent_load(self, name: str) -> Any:
+        return self._known.get(name)  # None for what is not shown
 
 
-def draw_for_parent() -> None:
-    """In the process that draws: take the case and the prosthesis from standard input, and answer on standard output.
-
-    It ends with the process that started it, whose end closes both.
-    """
-    shot(figures.colour_bar_figure(1.0, ""), alt="", caption="")  # loads what draws and packs
-    try:
-        case: Prepared = _received(sys.stdin.buffer)
-        vault = vault_of(case)
-        made: Prosthesis = _received(sys.stdin.buffer, case.openings)
-    except _CUT_SHORT:
-        return  # there is nothing to draw
-    pickle.dump(shape_shots(case, vault, made), sys.stdout.buffer, protocol=pickle.HIGHEST_PROTOCOL)
-
-
-def _start() -> subprocess.Popen[bytes]:
+def _start() -> subprocess.Popen[bytes] | None:
+    """A process that draws, with the modules that are found here; None where none can be started."""
     # an error in it is met again where it is drawn instead, and told there
-    pipe = subprocess.PIPE
-    return subprocess.Popen([sys.executable, "-c", _PROGRAM], stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+    pipe, program = subprocess.PIPE, f"import sys; sys.path[:] = {sys.path!r}; {_PROGRAM}"
+    try:
+        return subprocess.Popen([sys.executable, "-c", program], stdin=pipe, stdout=pipe, stderr=subprocess.DEVNULL)
+    except OSError:
+        return None
+
+
+def _end(process: subprocess.Popen[bytes]) -> None:
+    """Close what leads to a process that was killed."""
+    for stream in (process.stdin, process.stdout):
+        assert stream is not None
+        with suppress(OSError):  # it died before it read all
+            stream.close()
+    process.wait()
+
+
+def _n_processors() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

@@ -11,8 +11,9 @@ from cli_runs import digest
 
 from cranio_nb.errors import CannotWrite, InputRefused
 from cranio_nb.methods.design import design
-from cranio_nb.output import design_folder, files, painter
+from cranio_nb.output import design_folder, design_pictures, files, painter
 from cranio_nb.output.design_folder import made_record, run_and_draw, save
+from cranio_nb.output.painter import Painter
 from cranio_nb.output.staging import staged
 from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.prosthesis import Prosthesis
@@ -116,9 +117,10 @@ def test_a_folder_that_is_in_the_way_is_refused_before_the_mesh_is_checked(made,
 
 def test_a_run_saved_by_name_is_what_the_run_writes(phantom, tmp_path):
     write_case(tmp_path, phantom())
-    result, drawn = run_and_draw(prepare(tmp_path / "ct"), method="hull")
     (tmp_path / "run").mkdir()
-    design_folder.write_outputs(result, tmp_path / "run", drawn)
+    with Painter() as painter:
+        result, page = run_and_draw(painter, prepare(tmp_path / "ct"), method="hull")
+        design_folder.write_outputs(result, tmp_path / "run", page)
     save(result.prosthesis, tmp_path / "saved", result.case.load)
     run, saved = digest(tmp_path / "run"), digest(tmp_path / "saved")
     assert set(run) ^ set(saved) == {"report.html", "manifest.json"}
@@ -131,20 +133,18 @@ def test_pictures_that_cannot_be_drawn_leave_nothing_behind(phantom, tmp_path, m
     def fail(*_):
         raise MemoryError("no room for pictures")
 
-    monkeypatch.setattr(painter, "shape_shots", fail)
+    monkeypatch.setattr(design_pictures, "shape_shots", fail)
+    monkeypatch.setattr(painter, "_PROGRAM", "raise SystemExit")
     write_case(tmp_path, phantom())
-    result, drawn = run_and_draw(prepare(tmp_path / "ct"), method="hull")
-    with pytest.raises(MemoryError, match="no room"), staged(tmp_path / "out") as part:
-        design_folder.write_outputs(result, part, drawn)
+    with Painter() as one, pytest.raises(MemoryError, match="no room"), staged(tmp_path / "out") as part:
+        result, page = run_and_draw(one, prepare(tmp_path / "ct"), method="hull")
+        design_folder.write_outputs(result, part, page)
     assert not (tmp_path / "out").exists()
 
 
 def test_a_refused_design_leaves_no_thread_behind(phantom, tmp_path):
     write_case(tmp_path, phantom())
     before = threading.active_count()
-    with pytest.raises(InputRefused, match="sheet"):
-        run_and_draw(prepare(tmp_path / "ct"), method="sheet")
-    for thread in set(threading.enumerate()) - {threading.main_thread()}:
-        if thread.name.startswith("ThreadPoolExecutor"):
-            thread.join()
+    with pytest.raises(InputRefused, match="sheet"), Painter() as painter:
+        run_and_draw(painter, prepare(tmp_path / "ct"), method="sheet")
     assert threading.active_count() <= before

@@ -1,11 +1,13 @@
-"""Pictures drawn elsewhere are those drawn here, whatever becomes of the process that draws."""
+"""A page made elsewhere is the one made here, whatever becomes of the process that makes it."""
 
 import subprocess
 import sys
+import threading
 
 import pytest
 
 from cranio_nb.output import painter
+from cranio_nb.output.design_page import measure_shots, report_page
 from cranio_nb.output.design_pictures import shape_shots, vault_of
 from cranio_nb.output.painter import Painter
 from cranio_nb.pipeline.preparation import prepare
@@ -15,61 +17,90 @@ from data_synth.files import write_case
 
 
 @pytest.fixture(scope="module")
-def run(tmp_path_factory):
+def case(tmp_path_factory):
     folder = tmp_path_factory.mktemp("painted")
     write_case(folder, phantom_case("tiny", "burr_hole", 0))
-    return run_design(prepare(folder / "ct"), method="slicewise")
+    return prepare(folder / "ct", truth=folder / "truth.nii.gz")
 
 
 @pytest.fixture(scope="module")
-def here(run):
-    return shape_shots(run.case, vault_of(run.case), run.prosthesis)
+def run(case):
+    return run_design(case, method="slicewise")
 
 
-def painted(run):
-    one = Painter(run.case)
-    shots = one.draw(run.prosthesis)
-    one.close()
-    return shots.result()
+@pytest.fixture(scope="module")
+def here(case, run):
+    return report_page(run, shape_shots(case, vault_of(case), run.prosthesis) | measure_shots(run))
 
 
-def processes(monkeypatch, program=None):
-    """The processes that are started from now on, with another program where one is given."""
+def painted(case, run):
+    with Painter() as one:
+        one.look_at(case)
+        one.draw(run.prosthesis)
+        return one.page(run).result()
+
+
+@pytest.fixture
+def processes(monkeypatch):
+    """The processes that are started from now on."""
     started, start = [], painter._start
-    if program is not None:
-        monkeypatch.setattr(painter, "_PROGRAM", program)
-    monkeypatch.setattr(painter, "_LARGE", 0)
+    monkeypatch.setattr(painter, "_n_processors", lambda: 2)
     monkeypatch.setattr(painter, "_start", lambda: started.append(start()) or started[-1])
     return started
 
 
-def test_a_small_scan_is_drawn_in_a_thread(run, here, monkeypatch):
+def test_with_one_processor_a_thread_makes_the_page(case, run, here, monkeypatch):
+    monkeypatch.setattr(painter, "_n_processors", lambda: 1)
     monkeypatch.setattr(painter, "_start", lambda: pytest.fail("a process was started"))
-    assert painted(run) == here and all(here.values())
+    assert painted(case, run) == here
 
 
-def test_a_large_scan_is_drawn_in_a_process_which_ends(run, here, monkeypatch):
-    started = processes(monkeypatch)
-    monkeypatch.setattr(painter, "shape_shots", lambda *_: pytest.fail("drawn here"))
-    assert painted(run) == here
-    assert len(started) == 1 and started[0].wait(60) is not None
+def test_with_two_processors_a_process_makes_the_page_and_ends(case, run, here, processes, monkeypatch):
+    monkeypatch.setattr("cranio_nb.output.design_pictures.shape_shots", lambda *_: pytest.fail("drawn here"))
+    assert painted(case, run) == here
+    assert len(processes) == 1 and processes[0].wait(60) is not None
 
 
 @pytest.mark.parametrize(
     "program",
-    ["raise SystemExit", "import pickle, sys; pickle.load(sys.stdin.buffer)", "print('no pictures')"],
-    ids=["dies at once", "dies after the case", "answers something else"],
+    [
+        "raise SystemExit",
+        "import pickle; pickle.load(sys.stdin.buffer)",
+        "from cranio_nb.output.painter import _received, _known; case = _received(sys.stdin.buffer);"
+        " _received(sys.stdin.buffer, _known(case))",
+        "print('no page', flush=True); sys.stdin.buffer.read()",
+    ],
+    ids=["dies at once", "dies within the case", "dies after the prosthesis", "answers something else"],
 )
-def test_where_the_process_dies_the_pictures_are_drawn_here(program, run, here, monkeypatch):
-    started = processes(monkeypatch, program)
-    assert painted(run) == here
-    started[0].wait(60)
+def test_where_the_process_dies_the_page_is_made_here(program, case, run, here, processes, monkeypatch):
+    monkeypatch.setattr(painter, "_PROGRAM", program)
+    assert painted(case, run) == here
+    assert processes[0].wait(60) is not None
 
 
-def test_without_an_order_the_process_ends(run, monkeypatch):
-    started = processes(monkeypatch)
-    Painter(run.case).close()
-    assert started[0].wait(60) is not None
+def test_where_no_process_can_be_started_the_page_is_made_here(case, run, here, monkeypatch):
+    monkeypatch.setattr(painter, "_n_processors", lambda: 2)
+    monkeypatch.setattr(sys, "executable", "/nowhere/python")
+    assert painted(case, run) == here
+
+
+def test_the_modules_are_those_of_the_one_that_asks(processes, tmp_path, monkeypatch):
+    (tmp_path / "pickle.py").write_text("raise SystemExit")  # what lies where the user is, is not loaded
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", [entry for entry in sys.path if entry])
+    monkeypatch.setattr(painter, "_PROGRAM", "import pickle; pickle.dump(sys.path, sys.stdout.buffer)")
+    with Painter(), processes[0] as process:
+        answer = process.stdout.read()
+    assert b"pickle.py" not in answer and str(sys.path[-1]).encode() in answer
+
+
+def test_what_is_not_wanted_any_more_is_not_made(case, run, processes):
+    before = threading.active_count()
+    with Painter() as one:
+        one.look_at(case)
+        one.draw(run.prosthesis)
+    assert processes[0].wait(60) is not None
+    assert threading.active_count() <= before
 
 
 def test_the_process_ends_with_the_one_that_started_it():
