@@ -123,6 +123,139 @@ def up_in_view(towards: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([0.0, 0.0, 1.0]) if abs(towards[2]) < 0.95 else np.array([0.0, -1.0, 0.0])
 
 
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """What a picture shows: its axes and the part of the view that lies in it.
+
+    Parameters
+    ----------
+    axes : ndarray, shape (3, 3)
+        Of the view, as `view_axes` gives them.
+    corner : ndarray, shape (2,)
+        Upper left corner along the axes of the view, mm.
+    shape : tuple of int
+        Height and width, px.
+    px_mm : float
+        Size of a pixel.
+    """
+
+    axes: NDArray[np.float64]
+    corner: NDArray[np.float64]
+    shape: tuple[int, int]
+    px_mm: float
+
+    def holds(self, mesh: Mesh) -> bool:
+        """Whether a mesh is seen whole.
+
+        Parameters
+        ----------
+        mesh : Mesh
+            World mm.
+
+        Returns
+        -------
+        bool
+        """
+        at = (mesh.vertices @ self.axes[:2].T - self.corner) / self.px_mm
+        return bool((at >= 0).all() and (at < self.shape[::-1]).all())
+
+
+def frame_around(meshes: Sequence[Mesh], towards: ArrayLike, *, px_mm: float, margin_mm: float = _MARGIN_MM) -> Frame:
+    """The frame in which meshes are seen whole.
+
+    Parameters
+    ----------
+    meshes : sequence of Mesh
+        World mm; one vertex at least.
+    towards : array_like, shape (3,)
+        From the head to the viewer, LPS.
+    px_mm : float
+        Size of a pixel.
+    margin_mm : float
+        Left free around them.
+
+    Returns
+    -------
+    Frame
+    """
+    axes = view_axes(towards)
+    across = np.concatenate([mesh.vertices for mesh in meshes]) @ axes.T
+    low, high = across[:, :2].min(axis=0) - margin_mm, across[:, :2].max(axis=0) + margin_mm
+    width, height = np.ceil((high - low) / px_mm).astype(int)
+    return Frame(axes, low, (int(height), int(width)), px_mm)
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """One solid as it is seen in a frame.
+
+    Parameters
+    ----------
+    rgb : ndarray, shape (H, W, 3)
+        0 to 1; white where it is not.
+    depth : ndarray, shape (H, W)
+        mm towards the viewer; -inf where it is not.
+    """
+
+    rgb: NDArray[np.float32]
+    depth: NDArray[np.float32]
+
+
+def layer_of(solid: Solid, frame: Frame, *, shaded: bool = True) -> Layer:
+    """Draw one solid with a depth buffer and light from the upper left.
+
+    Parameters
+    ----------
+    solid : Solid
+    frame : Frame
+        That holds it.
+    shaded : bool
+        False keeps the colours as they are, where they mean numbers.
+
+    Returns
+    -------
+    Layer
+    """
+    # in the frame of the view (right, down, towards the viewer), from mm to pixels
+    mesh = solid.mesh
+    vertices = mesh.vertices @ frame.axes.T
+    at = np.column_stack([(vertices[:, :2] - frame.corner) / frame.px_mm, vertices[:, 2]])
+    face, weight, depth = _scan(at, mesh.faces, *frame.shape)
+    # colours and normals between the corners of the face that is seen
+    hit = face >= 0
+    corners, share = mesh.faces[face[hit]], weight[hit]
+    colours = np.broadcast_to(solid.colours, mesh.vertices.shape)
+    colour = np.einsum("nc,ncd->nd", share, colours[corners])
+    if shaded:
+        normals = mesh.vertex_normals @ frame.axes.T
+        colour = _lit(colour, np.einsum("nc,ncd->nd", share, normals[corners]))
+    rgb = np.ones((*frame.shape, 3), np.float32)
+    rgb[hit] = colour
+    return Layer(rgb, depth)
+
+
+def picture_of(layers: Sequence[Layer], frame: Frame, *, outlined: bool = True) -> Picture:
+    """The nearest of several layers in each pixel.
+
+    Parameters
+    ----------
+    layers : sequence of Layer
+        Drawn in the frame.
+    frame : Frame
+    outlined : bool
+        Darken rims and silhouettes.
+
+    Returns
+    -------
+    Picture
+    """
+    rgb, depth = layers[0].rgb, layers[0].depth
+    for layer in layers[1:]:
+        nearer = layer.depth > depth
+        rgb, depth = np.where(nearer[..., None], layer.rgb, rgb), np.maximum(layer.depth, depth)
+    return Picture(_outlined(rgb, depth) if outlined else rgb, depth, frame.px_mm, frame.corner)
+
+
 def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, shaded: bool = True) -> Picture:
     """Draw solids with a depth buffer and light from the upper left.
 
@@ -147,28 +280,8 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, s
     >>> picture.rgb.shape, picture.rgb[0, 0].tolist(), picture.rgb[6, 6].tolist()
     ((12, 12, 3), [1.0, 1.0, 1.0], [1.0, 0.0, 0.0])
     """
-    # all solids in the frame of the view: right, down, towards the viewer
-    axes = view_axes(towards)
-    vertices = np.concatenate([s.mesh.vertices for s in solids]) @ axes.T
-    starts = np.cumsum([0, *[len(s.mesh.vertices) for s in solids]])
-    faces = np.concatenate([s.mesh.faces + at for s, at in zip(solids, starts[:-1], strict=True)])
-    colours = np.concatenate([np.broadcast_to(s.colours, s.mesh.vertices.shape) for s in solids])
-    # from mm to pixels
-    across = np.ascontiguousarray(vertices[:, :2].T)
-    low = across.min(axis=1) - _MARGIN_MM
-    width, height = np.ceil((across.max(axis=1) + _MARGIN_MM - low) / px_mm).astype(int)
-    at = np.column_stack([(vertices[:, :2] - low) / px_mm, vertices[:, 2]])
-    face, weight, depth = _scan(at, faces, int(height), int(width))
-    # colours and normals between the corners of the face that is seen
-    hit = face >= 0
-    corners, share = faces[face[hit]], weight[hit]
-    colour = np.einsum("nc,ncd->nd", share, colours[corners])
-    if shaded:
-        normals = np.concatenate([s.mesh.vertex_normals for s in solids]) @ axes.T
-        colour = _lit(colour, np.einsum("nc,ncd->nd", share, normals[corners]))
-    rgb = np.ones((height, width, 3), np.float32)
-    rgb[hit] = colour
-    return Picture(_outlined(rgb, depth) if shaded else rgb, depth, px_mm, low)
+    frame = frame_around([solid.mesh for solid in solids], towards, px_mm=px_mm)
+    return picture_of([layer_of(solid, frame, shaded=shaded) for solid in solids], frame, outlined=shaded)
 
 
 def _scan(

@@ -79,14 +79,15 @@ def view_shots(comparison: Comparison) -> dict[str, list[Shot]]:
     if comparison.true is not None:
         shown = {"truth": comparison.true.mesh} | shown
     towards = list(figures.views_of([one.direction for one in case.sizes]).items())[:_N_VIEWS]
-    return {view: [_view_shot(name, mesh, skull, view, side) for name, mesh in shown.items()] for view, side in towards}
+    drawn = {name: figures.skull_view(skull, side, px_mm=_VIEW_PX_MM) for name, side in towards}
+    return {side: [_view_shot(name, mesh, side, view) for name, mesh in shown.items()] for side, view in drawn.items()}
 
 
-def _view_shot(name: str, mesh: Mesh, skull: Mesh, view: str, side: NDArray[np.float64]) -> Shot:
+def _view_shot(name: str, mesh: Mesh, side: str, view: figures.SkullView) -> Shot:
     """One prosthesis from one side."""
     what = "the bone that is missing" if name == "truth" else f"the prosthesis of {name}"
-    alt = f"Shaded view {view}: the vault of the skull in ivory and {what} in blue; the scale bar is 50 mm."
-    return shot(figures.view_figure(skull, mesh, side, px_mm=_VIEW_PX_MM), alt=alt, caption=name)
+    alt = f"Shaded view {side}: the vault of the skull in ivory and {what} in blue; the scale bar is 50 mm."
+    return shot(figures.view_figure(view, mesh), alt=alt, caption=name)
 
 
 def cut_shots(comparison: Comparison) -> list[Shot]:

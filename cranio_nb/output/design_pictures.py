@@ -25,8 +25,11 @@ _BELOW_MM = 100.0  # shown of the scan below the head's centre
 _CROSSED = "the curves cross: do not trust the shape here"
 
 
-def vault_of(case: Prepared) -> Mesh:
-    """The skull as the views show it: coarse, and cut off above the face.
+Views = dict[str, figures.SkullView]
+
+
+def skull_views(case: Prepared) -> Views:
+    """The skull from three sides, coarse, and cut off above the face: what there is to draw before a prosthesis.
 
     Parameters
     ----------
@@ -34,20 +37,22 @@ def vault_of(case: Prepared) -> Mesh:
 
     Returns
     -------
-    Mesh
-        World mm.
+    dict of str to SkullView
+        By the names of the views.
     """
-    return skull_surface(case.bone, lowest_shown(case.sizes, case.openings[0]))
+    vault = skull_surface(case.bone, lowest_shown(case.sizes, case.openings[0]))
+    sides = figures.views_of([one.direction for one in case.sizes])
+    return {name: figures.skull_view(vault, towards) for name, towards in sides.items()}
 
 
-def shape_shots(case: Prepared, vault: Mesh, made: Prosthesis) -> dict[str, list[Shot]]:
+def shape_shots(case: Prepared, views: Views, made: Prosthesis) -> dict[str, list[Shot]]:
     """All pictures that need no measures.
 
     Parameters
     ----------
     case : Prepared
-    vault : Mesh
-        Its `vault_of`.
+    views : dict of str to SkullView
+        Its `skull_views`.
     made : Prosthesis
         Designed for it.
 
@@ -57,18 +62,21 @@ def shape_shots(case: Prepared, vault: Mesh, made: Prosthesis) -> dict[str, list
         "views", "cuts" and "slices".
     """
     made = made.cropped()  # no picture looks beyond its box
-    views = view_shots(case, vault, made.mesh)
-    return {"views": views, "cuts": cut_shots(case, made), "slices": slice_shots(case, made)}
+    return {
+        "views": view_shots(case, views, made.mesh),
+        "cuts": cut_shots(case, made),
+        "slices": slice_shots(case, made),
+    }
 
 
-def view_shots(case: Prepared, vault: Mesh, prosthesis: Mesh) -> list[Shot]:
+def view_shots(case: Prepared, views: Views, prosthesis: Mesh) -> list[Shot]:
     """Skull and prosthesis from three sides.
 
     Parameters
     ----------
     case : Prepared
-    vault : Mesh
-        Its `vault_of`.
+    views : dict of str to SkullView
+        Its `skull_views`.
     prosthesis : Mesh
         World mm.
 
@@ -78,13 +86,12 @@ def view_shots(case: Prepared, vault: Mesh, prosthesis: Mesh) -> list[Shot]:
     """
     where = "; ".join(one.place for one in case.sizes)
     shots = []
-    for name, towards in figures.views_of([one.direction for one in case.sizes]).items():
+    for name, view in views.items():
         alt = (
             f"Shaded view {name}: the vault of the skull in ivory and the prosthesis in blue, which closes the opening "
             f"({where}). Letters at the edges name the patient's sides; the scale bar is 50 mm."
         )
-        figure = figures.view_figure(vault, prosthesis, towards)
-        shots.append(shot(figure, alt=alt, caption=_capital(name)))
+        shots.append(shot(figures.view_figure(view, prosthesis), alt=alt, caption=_capital(name)))
     return shots
 
 

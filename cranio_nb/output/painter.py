@@ -16,10 +16,10 @@ from io import BytesIO
 from typing import IO, TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # what draws is loaded where it draws, so that the process can be started before anything else
-    from ..mesh import Mesh
     from ..pipeline.preparation import Prepared
     from ..pipeline.run import RunResult
     from ..prosthesis import Prosthesis
+    from .design_pictures import Views
     from .pages import Shot
 
     Shots = dict[str, list[Shot]]
@@ -101,25 +101,25 @@ class Painter:
         """
         return self._thread.submit(self._page, result)
 
-    def _see(self, case: Prepared) -> Mesh | None:
-        """Show the case to the process, or make the skull of the views here."""
+    def _see(self, case: Prepared) -> Views | None:
+        """Show the case to the process, or draw the skull here."""
         # of the openings that stay open the size is shown; a sheet of each is as large as the scan, and is not
         unseen = {f"left open {one.number}": one.opening for one in case.left_open if one.size}
         if self._process is not None and self._tell(case, unseen):
             _ = case.digests  # made now, beside the design
             return None
-        from .design_pictures import vault_of
+        from .design_pictures import skull_views
 
-        return vault_of(case)
+        return skull_views(case)
 
     def _draw(self, made: Prosthesis) -> Shots | None:
         """Show the prosthesis to the process, or draw it here."""
-        vault = self._seen.result()
-        if vault is None and self._tell(made.cropped(), _known(self._case)):
+        views = self._seen.result()
+        if views is None and self._tell(made.cropped(), _known(self._case)):
             return None
-        from .design_pictures import shape_shots, vault_of
+        from .design_pictures import shape_shots, skull_views
 
-        return shape_shots(self._case, vault or vault_of(self._case), made) if self._working else {}
+        return shape_shots(self._case, views or skull_views(self._case), made) if self._working else {}
 
     def _page(self, result: RunResult) -> str:
         """The page that the process makes of a run; where it died, or was never there, the page is made here."""
@@ -130,12 +130,12 @@ class Painter:
                 page: str = pickle.load(self._process.stdout)
                 return page
         from .design_page import measure_shots, report_page
-        from .design_pictures import shape_shots, vault_of
+        from .design_pictures import shape_shots, skull_views
 
         if not self._working:
             return ""
         if shots is None:  # the process was killed, perhaps for want of memory
-            shots = shape_shots(self._case, vault_of(self._case), result.prosthesis)
+            shots = shape_shots(self._case, skull_views(self._case), result.prosthesis)
         return report_page(result, shots | measure_shots(result))
 
     def _tell(self, what: Prepared | Prosthesis | RunResult, known: Known | None = None) -> bool:
@@ -155,7 +155,7 @@ def paint_for_parent() -> None:
     """
     from ..drawing import figures
     from .design_page import measure_shots, report_page
-    from .design_pictures import shape_shots, vault_of
+    from .design_pictures import shape_shots, skull_views
     from .pages import page_template, shot
 
     # what takes time to load, while the scan is read
@@ -163,9 +163,9 @@ def paint_for_parent() -> None:
     page_template("design_page.html")
     with suppress(*_CUT_SHORT):  # there is nothing more to draw
         case: Prepared = _received(sys.stdin.buffer)
-        vault, _ = vault_of(case), case.digests
+        views, _ = skull_views(case), case.digests
         made: Prosthesis = _received(sys.stdin.buffer, _known(case))
-        shots = shape_shots(case, vault, made)
+        shots = shape_shots(case, views, made)
         result: RunResult = _received(sys.stdin.buffer, _known(case, made))
         page = report_page(result, shots | measure_shots(result))
         pickle.dump(page, sys.stdout.buffer, protocol=pickle.HIGHEST_PROTOCOL)

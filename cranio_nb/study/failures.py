@@ -137,9 +137,9 @@ def _case_shot(case: Case, why: str) -> Shot | None:
     except Exception:  # whatever keeps it from being read is among the reasons already
         return None
     missing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp)) if truth is None else extract_surface(truth)
-    figure = figures.view_figure(skull_surface(bone), missing, _towards(bone, truth), px_mm=_PX_MM)
+    view = figures.skull_view(skull_surface(bone), _towards(bone, truth), px_mm=_PX_MM)
     alt = f"Shaded view of the skull of {case.name} in ivory, and what is missing in blue where it is known; bar 50 mm."
-    return shot(figure, alt=alt, caption=f"{case.name}: {why}")
+    return shot(figures.view_figure(view, missing), alt=alt, caption=f"{case.name}: {why}")
 
 
 def _towards(bone: Volume, truth: Volume | None) -> NDArray[np.float64]:

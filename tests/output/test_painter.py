@@ -8,7 +8,7 @@ import pytest
 
 from cranio_nb.output import painter
 from cranio_nb.output.design_page import measure_shots, report_page
-from cranio_nb.output.design_pictures import shape_shots, vault_of
+from cranio_nb.output.design_pictures import shape_shots, skull_views
 from cranio_nb.output.painter import Painter
 from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import run_design
@@ -30,7 +30,7 @@ def run(case):
 
 @pytest.fixture(scope="module")
 def here(case, run):
-    return report_page(run, shape_shots(case, vault_of(case), run.prosthesis) | measure_shots(run))
+    return report_page(run, shape_shots(case, skull_views(case), run.prosthesis) | measure_shots(run))
 
 
 def painted(case, run):

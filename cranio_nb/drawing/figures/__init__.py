@@ -36,7 +36,7 @@ from .panels import (
     view_panel,
 )
 from .slices import draw_curves, draw_slice, show_areas, show_frame, slice_figure
-from .views import distance_figure, view_figure, views_of
+from .views import SkullView, distance_figure, skull_view, view_figure, views_of
 
 if TYPE_CHECKING:
     from .axes import Axes, Figure
@@ -47,6 +47,7 @@ __all__ = [
     "Axes",
     "Figure",
     "Panel",
+    "SkullView",
     "colour_bar_figure",
     "colour_scale",
     "cut_figure",
@@ -75,6 +76,7 @@ __all__ = [
     "show_areas",
     "show_ct",
     "show_frame",
+    "skull_view",
     "slice_figure",
     "slice_panel",
     "view_figure",

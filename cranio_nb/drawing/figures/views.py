@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...mesh import Mesh
 from ..palette import NO_VALUE, PROSTHESIS, SKULL, rgb_shares
-from ..shading import Picture, Solid, render, view_axes
+from ..shading import Frame, Layer, Picture, Solid, frame_around, layer_of, picture_of, render, view_axes
 from .axes import colour_scale, name_sides, ring_place, scale_bar, show_pixels
 
 if TYPE_CHECKING:
@@ -25,6 +26,7 @@ SIDES = {
 }
 """Directions from the head to the viewer, LPS."""
 _RIM_PX = 14  # left free around a view
+_ROOM_MM = 3.0  # around a skull, for a prosthesis that stands out of it
 _LIFT_MM = 0.05  # of a coloured side before the same faces of the whole
 
 
@@ -59,13 +61,38 @@ def views_of(directions: Sequence[ArrayLike]) -> dict[str, NDArray[np.float64]]:
     return views
 
 
-def view_figure(skull: Mesh, prosthesis: Mesh, towards: ArrayLike, *, px_mm: float = 0.6) -> Figure:
-    """Skull and prosthesis, shaded.
+@dataclass(frozen=True, eq=False)
+class SkullView:
+    """A skull as it is seen from one side, drawn once for all prostheses that are shown in it.
 
     Parameters
     ----------
-    skull, prosthesis : Mesh
-        World mm; the skull may be empty.
+    skull : Mesh
+        World mm; may be empty.
+    towards : ndarray, shape (3,)
+        From the head to the viewer, LPS.
+    px_mm : float
+        Size of a pixel.
+    frame : Frame or None
+        With room for a prosthesis; None for an empty skull.
+    layer : Layer or None
+        The skull in it.
+    """
+
+    skull: Mesh
+    towards: NDArray[np.float64]
+    px_mm: float
+    frame: Frame | None
+    layer: Layer | None
+
+
+def skull_view(skull: Mesh, towards: ArrayLike, *, px_mm: float = 0.6) -> SkullView:
+    """Draw a skull, to show prostheses in it.
+
+    Parameters
+    ----------
+    skull : Mesh
+        World mm; may be empty.
     towards : array_like, shape (3,)
         From the head to the viewer, LPS.
     px_mm : float
@@ -73,14 +100,45 @@ def view_figure(skull: Mesh, prosthesis: Mesh, towards: ArrayLike, *, px_mm: flo
 
     Returns
     -------
-    Figure
+    SkullView
     """
-    solids = [Solid(prosthesis, rgb_shares(PROSTHESIS))]
-    if len(skull.faces):
-        solids.insert(0, Solid(skull, rgb_shares(SKULL)))
-    figure, ax = _with_rim(render(solids, towards, px_mm=px_mm))
-    name_sides(ax, view_axes(towards))
-    scale_bar(ax, 50.0 / px_mm, "50 mm")
+    side = np.asarray(towards, float)
+    if not len(skull.faces):
+        return SkullView(skull, side, px_mm, None, None)
+    frame = frame_around([skull], side, px_mm=px_mm, margin_mm=_ROOM_MM)
+    return SkullView(skull, side, px_mm, frame, layer_of(Solid(skull, rgb_shares(SKULL)), frame))
+
+
+def view_figure(view: SkullView, prosthesis: Mesh) -> Figure:
+    """Skull and prosthesis, shaded.
+
+    Parameters
+    ----------
+    view : SkullView
+    prosthesis : Mesh
+        World mm; may be empty where there is a skull.
+
+    Returns
+    -------
+    Figure
+
+    Examples
+    --------
+    >>> corners = np.array([[0.0, 0, 0], [50, 0, 0], [0, 0, 50], [50, 0, 50]])
+    >>> skull = Mesh(corners, np.array([[0, 1, 2], [1, 3, 2]]))
+    >>> figure = view_figure(skull_view(skull, (0, -1, 0)), Mesh(corners / 2 - [0, 1, 0], skull.faces))
+    >>> [text.get_text() for text in figure.axes[0].texts]
+    ['L', 'R', 'S', 'I', '50 mm']
+    """
+    plate = Solid(prosthesis, rgb_shares(PROSTHESIS))
+    if view.frame is not None and view.layer is not None and view.frame.holds(prosthesis):
+        picture = picture_of([view.layer, layer_of(plate, view.frame)], view.frame)
+    else:  # there is no skull, or the prosthesis stands out of it farther than there is room
+        solids = [Solid(view.skull, rgb_shares(SKULL)), plate] if len(view.skull.faces) else [plate]
+        picture = render(solids, view.towards, px_mm=view.px_mm)
+    figure, ax = _with_rim(picture)
+    name_sides(ax, view_axes(view.towards))
+    scale_bar(ax, 50.0 / view.px_mm, "50 mm")
     return figure
 
 

@@ -5,6 +5,7 @@ import pytest
 from shapes import ball
 
 from cranio_nb.drawing import figures
+from cranio_nb.mesh import Mesh
 
 
 def test_three_views_show_the_opening():
@@ -26,11 +27,26 @@ def test_distance_map_has_the_colours_of_its_scale():
 
 
 def test_view_names_the_patients_sides():
-    figure = figures.view_figure(ball(radius=30), ball((0, -25, 0), 8), (0, -1, 0))
+    figure = figures.view_figure(figures.skull_view(ball(radius=30), (0, -1, 0)), ball((0, -25, 0), 8))
     places = {t.get_text(): t.get_position() for t in figure.axes[0].texts}
     assert places["L"][0] > places["R"][0] and "S" in places and "50 mm" in places
     bar = figure.axes[0].lines[-1].get_xdata()
     assert np.ptp(bar) * 0.6 == pytest.approx(50)
+
+
+@pytest.mark.parametrize("place", [(0, -40, 0), (0, -40, 29), (55, 0, 0)], ids=["within", "at the rim", "far out"])
+def test_a_prosthesis_is_seen_whole_wherever_it_stands(place):
+    """A blue ball of 8 mm before or beside the skull has its own area in the picture, at 0.6 mm for each pixel."""
+    view = figures.skull_view(ball(radius=30), (0, -1, 0))
+    rgb = np.asarray(figures.view_figure(view, ball(place, 8)).axes[0].images[0].get_array())
+    blue = (rgb[..., 2] > rgb[..., 0] + 0.1).sum() * 0.6**2
+    assert blue == pytest.approx(np.pi * (8 + 0.6 / 2) ** 2, rel=0.06)  # a pixel counts that it touches
+
+
+def test_without_a_skull_the_prosthesis_stands_alone():
+    nothing = Mesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp))
+    figure = figures.view_figure(figures.skull_view(nothing, (0, -1, 0)), ball(radius=8))
+    assert figure.axes[0].images[0].get_array().shape[1] == pytest.approx((16 + 2) / 0.6 + 2 * 14, abs=2)
 
 
 def test_the_farthest_node_is_ringed():
