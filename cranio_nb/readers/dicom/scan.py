@@ -14,6 +14,7 @@ from pydicom.uid import DeflatedExplicitVRLittleEndian, ExplicitVRBigEndian, Imp
 
 from ...errors import InputRefused
 from ..load_report import Finding
+from .elements import Converted
 from .file_list import IMAGE_SUFFIXES, list_files
 from .file_refusals import corrupt
 from .parse import CT_CLASSES, parse_file
@@ -108,6 +109,7 @@ def scan(path: Path) -> tuple[Contents, list[Finding]]:
     files, findings = ([path], []) if path.is_file() else list_files(path)
     headers: list[SliceHeader] = []
     unread: list[Unread] = []
+    converted: Converted = {}
     without_image = n_frames = n_inflated = 0
     for index, file in enumerate(files):
         try:
@@ -118,7 +120,7 @@ def scan(path: Path) -> tuple[Contents, list[Finding]]:
             # what the headers promise is bounded before one is made for every frame
             n_frames += count_frames(parsed[0], index)
             n_inflated += 0 if parsed[1] is None else parsed[1].inflated
-            images = [] if _over(n_frames, n_inflated) else read_headers(*parsed, index)
+            images = [] if _over(n_frames, n_inflated) else read_headers(*parsed, index, converted)
         except InputRefused as error:
             if path.is_file():
                 raise

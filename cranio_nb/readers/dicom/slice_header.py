@@ -11,13 +11,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from pydicom.dataset import Dataset
 
+from .elements import Converted, Elements, Vector
 from .file_refusals import refusing
 from .parse import OVERLAY_BITS, PixelPlace
-
-Vector = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,7 +100,9 @@ class SliceHeader:
     overlay: bool
 
 
-def read_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
+def read_headers(
+    dataset: Dataset, place: PixelPlace | None, file: int, converted: Converted | None = None
+) -> list[SliceHeader]:
     """Read the header of each image in a file.
 
     Parameters
@@ -113,6 +113,8 @@ def read_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[
         Where its pixels lie.
     file : int
         Index among the folder's files.
+    converted : dict, optional
+        Of the folder: what its other files said, as `Elements` takes it.
 
     Returns
     -------
@@ -135,7 +137,7 @@ def read_headers(dataset: Dataset, place: PixelPlace | None, file: int) -> list[
     (array([-10. , -20. , 107.5]), array([0.5, 0.5]), (4, 6))
     """
     with refusing(file):
-        return _headers_of(dataset, place, file)
+        return _headers_of(Elements(dataset, converted), place, file)
 
 
 def count_frames(dataset: Dataset, file: int) -> int:
@@ -162,143 +164,92 @@ def count_frames(dataset: Dataset, file: int) -> int:
         return int(dataset.get("NumberOfFrames") or 1) if "Rows" in dataset and "Columns" in dataset else 0
 
 
-def _headers_of(dataset: Dataset, place: PixelPlace | None, file: int) -> list[SliceHeader]:
-    if "Rows" not in dataset or "Columns" not in dataset:
+def _headers_of(elements: Elements, place: PixelPlace | None, file: int) -> list[SliceHeader]:
+    if "Rows" not in elements or "Columns" not in elements:
         return []
-    frames = int(dataset.get("NumberOfFrames") or 1)
+    frames = int(elements.value("NumberOfFrames") or 1)
     # what a multi-frame file says of all frames, and of each
-    shared = _first(dataset, "SharedFunctionalGroupsSequence")
-    per_frame = dataset.get("PerFrameFunctionalGroupsSequence") or []
-    common = _common(dataset, place, file, frames)
+    shared = elements.first("SharedFunctionalGroupsSequence")
+    per_frame = elements.items("PerFrameFunctionalGroupsSequence")
+    common = _common(elements, place, file, frames)
     headers = []
     for frame in range(frames):
         groups = [per_frame[frame] if frame < len(per_frame) else None, shared]
-        headers.append(SliceHeader(frame=frame, **common, **_placement(dataset, groups, frame)))
+        headers.append(SliceHeader(frame=frame, **common, **_placement(elements, groups, frame)))
     return headers
 
 
-def _common(dataset: Dataset, place: PixelPlace | None, file: int, frames: int) -> dict[str, Any]:
+def _common(elements: Elements, place: PixelPlace | None, file: int, frames: int) -> dict[str, Any]:
     # of bits, the defaults of the standard
-    allocated = _int(dataset, "BitsAllocated") or 0
-    stored = _int(dataset, "BitsStored") or allocated
-    high = _int(dataset, "HighBit")
+    allocated = elements.integer("BitsAllocated") or 0
+    stored = elements.integer("BitsStored") or allocated
+    high = elements.integer("HighBit")
     return {
         "file": file,
         "place": place,
         "frames": frames,
-        "sop_class": _text(dataset, "SOPClassUID"),
-        "modality": _text(dataset, "Modality"),
-        "series": _text(dataset, "SeriesInstanceUID"),
-        "series_number": _int(dataset, "SeriesNumber"),
-        "study": _text(dataset, "StudyInstanceUID"),
-        "frame_of_reference": _text(dataset, "FrameOfReferenceUID"),
-        "person": _person(dataset),
-        "acquisition": _text(dataset, "AcquisitionNumber"),
-        "kernel": _kernel(dataset),
-        "content_time": _text(dataset, "ContentTime"),
-        "rows": int(dataset.Rows),
-        "cols": int(dataset.Columns),
-        "padding": _padding(dataset),
-        "samples": _int(dataset, "SamplesPerPixel") or 1,
-        "photometric": _text(dataset, "PhotometricInterpretation"),
+        "sop_class": elements.text("SOPClassUID"),
+        "modality": elements.text("Modality"),
+        "series": elements.text("SeriesInstanceUID"),
+        "series_number": elements.integer("SeriesNumber"),
+        "study": elements.text("StudyInstanceUID"),
+        "frame_of_reference": elements.text("FrameOfReferenceUID"),
+        "person": _person(elements),
+        "acquisition": elements.text("AcquisitionNumber"),
+        "kernel": _kernel(elements),
+        "content_time": elements.text("ContentTime"),
+        "rows": int(elements.value("Rows")),
+        "cols": int(elements.value("Columns")),
+        "padding": _padding(elements),
+        "samples": elements.integer("SamplesPerPixel") or 1,
+        "photometric": elements.text("PhotometricInterpretation"),
         "bits": (allocated, stored, stored - 1 if high is None else high),
-        "signed": _int(dataset, "PixelRepresentation") == 1,
-        "has_lut": "ModalityLUTSequence" in dataset,
-        "lossy": _text(dataset, "LossyImageCompression") == "01",
-        "overlay": any(tag in dataset for tag in OVERLAY_BITS),
+        "signed": elements.integer("PixelRepresentation") == 1,
+        "has_lut": "ModalityLUTSequence" in elements,
+        "lossy": elements.text("LossyImageCompression") == "01",
+        "overlay": any(tag in elements for tag in OVERLAY_BITS),
     }
 
 
-def _placement(dataset: Dataset, groups: list[Dataset | None], frame: int) -> dict[str, Any]:
+def _placement(elements: Elements, groups: list[Elements | None], frame: int) -> dict[str, Any]:
     """What may differ between the frames of one file: read from the functional groups, else from the file."""
 
-    def source(sequence: str) -> Dataset:
-        return next((item for g in groups if g is not None and (item := _first(g, sequence)) is not None), dataset)
+    def source(sequence: str) -> Elements:
+        return next((item for g in groups if g is not None and (item := g.first(sequence)) is not None), elements)
 
     # a frame's own group goes before the shared one, and both before the file's own elements
     rescale = source("PixelValueTransformationSequence")
     measures = source("PixelMeasuresSequence")
-    frame_type = _texts(source("CTImageFrameTypeSequence"), "FrameType")
+    frame_type = source("CTImageFrameTypeSequence").texts("FrameType")
     return {
-        "position": _floats(source("PlanePositionSequence"), "ImagePositionPatient", 3),
-        "orientation": _floats(source("PlaneOrientationSequence"), "ImageOrientationPatient", 6),
-        "spacing": _floats(measures, "PixelSpacing", 2),
-        "thickness": _float(measures, "SliceThickness"),
-        "slope": _float(rescale, "RescaleSlope"),
-        "intercept": _float(rescale, "RescaleIntercept"),
-        "tilt": _float(source("CTAcquisitionDetailsSequence"), "GantryDetectorTilt"),
-        "rescale_type": _text(rescale, "RescaleType"),
-        "image_type": frame_type or _texts(dataset, "ImageType"),
-        "instance": _int(dataset, "InstanceNumber") if groups == [None, None] else frame,
+        "position": source("PlanePositionSequence").vector("ImagePositionPatient", 3),
+        "orientation": source("PlaneOrientationSequence").vector("ImageOrientationPatient", 6),
+        "spacing": measures.vector("PixelSpacing", 2),
+        "thickness": measures.number("SliceThickness"),
+        "slope": rescale.number("RescaleSlope"),
+        "intercept": rescale.number("RescaleIntercept"),
+        "tilt": source("CTAcquisitionDetailsSequence").number("GantryDetectorTilt"),
+        "rescale_type": rescale.text("RescaleType"),
+        "image_type": frame_type or elements.texts("ImageType"),
+        "instance": elements.integer("InstanceNumber") if groups == [None, None] else frame,
     }
 
 
-def _first(dataset: Dataset, keyword: str) -> Dataset | None:
-    sequence = dataset.get(keyword)
-    return sequence[0] if sequence else None
-
-
-def _value(dataset: Dataset, keyword: str) -> Any:
-    """An element's value; None where absent or empty, NaN where its text is not of its kind."""
-    try:
-        value = dataset.get(keyword)
-    except Exception:
-        # a value that cannot be converted, e.g. letters in a number
-        return float("nan")
-    return None if value is None or (isinstance(value, str) and not value.strip()) else value
-
-
-def _text(dataset: Dataset, keyword: str) -> str:
-    value = _value(dataset, keyword)
-    return "" if value is None else str(value).strip()
-
-
-def _texts(dataset: Dataset, keyword: str) -> tuple[str, ...]:
-    value = _value(dataset, keyword)
-    values = [] if value is None else [value] if isinstance(value, str | float) else value
-    return tuple(str(v).strip().upper() for v in values)
-
-
-def _float(dataset: Dataset, keyword: str) -> float | None:
-    value = _value(dataset, keyword)
-    try:
-        return None if value is None else float(value)
-    except (TypeError, ValueError):
-        return float("nan")
-
-
-def _int(dataset: Dataset, keyword: str) -> int | None:
-    value = _float(dataset, keyword)
-    return None if value is None or not np.isfinite(value) else int(value)
-
-
-def _floats(dataset: Dataset, keyword: str, count: int) -> Vector | None:
-    """`count` numbers of an element; NaN where there are fewer, more, or other things."""
-    value = _value(dataset, keyword)
-    if value is None:
-        return None
-    try:
-        numbers = np.array([float(v) for v in value])
-    except (TypeError, ValueError):
-        numbers = np.array([])
-    return numbers if numbers.shape == (count,) else np.full(count, np.nan)
-
-
-def _padding(dataset: Dataset) -> tuple[float, float] | None:
-    value, limit = _float(dataset, "PixelPaddingValue"), _float(dataset, "PixelPaddingRangeLimit")
+def _padding(elements: Elements) -> tuple[float, float] | None:
+    value, limit = elements.number("PixelPaddingValue"), elements.number("PixelPaddingRangeLimit")
     if value is None or not np.isfinite(value):
         return None
     limit = value if limit is None or not np.isfinite(limit) else limit
     return min(value, limit), max(value, limit)
 
 
-def _person(dataset: Dataset) -> tuple[str, str, str]:
-    texts = [_text(dataset, k) for k in ("PatientID", "PatientName", "PatientBirthDate")]
+def _person(elements: Elements) -> tuple[str, str, str]:
+    texts = [elements.text(keyword) for keyword in ("PatientID", "PatientName", "PatientBirthDate")]
     digests = [hashlib.sha256(t.rstrip("^ ").encode()).hexdigest() if t else "" for t in texts]
     return digests[0], digests[1], digests[2]
 
 
-def _kernel(dataset: Dataset) -> str:
+def _kernel(elements: Elements) -> str:
     """The kernel's name, cut down to characters that are safe to show."""
-    joined = "/".join(_texts(dataset, "ConvolutionKernel"))
+    joined = "/".join(elements.texts("ConvolutionKernel"))
     return "".join(c for c in joined if c.isascii() and (c.isalnum() or c in "+-./_ "))[:16]
