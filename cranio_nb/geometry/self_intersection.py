@@ -84,21 +84,22 @@ def _near_pairs(
 ) -> NDArray[np.intp]:
     """Pairs of boxes that overlap, shape (N, 2), given the first cell of each box and the boxes in each cell."""
     # entries of one cell lie side by side once they are sorted
-    key = np.ravel_multi_index(tuple(cell.T), tuple(cell.max(axis=0) + 1))
+    key = np.ravel_multi_index(tuple(cell.T), tuple(cell.max(axis=0) + 1)).astype(np.int32)
     order = np.argsort(key, kind="stable")
-    box, key = box[order], key[order]
-    axes = [np.ascontiguousarray(a.T) for a in (lo, hi, first, cell[order])]
+    box, cell, key = box[order], cell[order], key[order]
+    low, high = lo[box].T.copy(), hi[box].T.copy()
+    begins = ((first[box] == cell) << np.arange(3)).sum(axis=1).astype(np.uint8)  # a bit for each axis
     found, i, gap = [np.empty((0, 2), np.intp)], np.arange(len(key)), 1
     while len(i):  # each entry against the gap-th after it, as long as both lie in one cell
-        i = i[i + gap < len(key)]
+        i = i[: np.searchsorted(i, len(key) - gap)]
         i = i[key[i] == key[i + gap]]
-        a, b, place = box[i], box[i + gap], i
-        for low, high, start, of in zip(*axes, strict=True):
-            # each pair once: in the first cell both share
-            meet = np.maximum(start[a], start[b]) == of[place]
-            meet &= np.maximum(low[a], low[b]) <= np.minimum(high[a], high[b])
-            a, b, place = a[meet], b[meet], place[meet]
-        found.append(np.stack([np.minimum(a, b), np.maximum(a, b)], axis=1))
+        # each pair once: in the first cell both share, where along each axis one of them begins
+        a = i[(begins[i] | begins[i + gap]) == 7]
+        for lows, highs in zip(low, high, strict=True):
+            b = a + gap
+            a = a[(lows[a] <= highs[b]) & (lows[b] <= highs[a])]
+        pair = box[a], box[a + gap]
+        found.append(np.stack([np.minimum(*pair), np.maximum(*pair)], axis=1))
         gap += 1
     return np.concatenate(found)
 
