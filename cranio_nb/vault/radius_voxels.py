@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
+from ..geometry.side_by_side import side_by_side
 from ..grid import box_around, nearest_values
 from ..volume import Volume
 from .ray_grid import RadiusMap, filled_from_nearest
@@ -98,7 +99,9 @@ def _between(
     """Voxels of a box whose direction lies in the region and whose radius lies between the two surfaces."""
     filled = np.zeros(box.shape, bool)
     plane_index = np.stack(np.meshgrid(*[np.arange(n, dtype=float) for n in box.shape[1:]], indexing="ij"), axis=-1)
-    for plane in range(box.shape[0]):
+
+    def fill(plane: int) -> None:
+        """Fill one plane."""
         away = box.to_world(np.insert(plane_index, 0, plane, axis=-1)) - radius_map.grid.centre
         at = radius_map.grid.locate(away)
         within = nearest_values(region, np.moveaxis(at, 0, -1), outside=False)
@@ -106,4 +109,6 @@ def _between(
         top, bottom = (ndimage.map_coordinates(r, at[:, within], order=1, mode="nearest") for r in (outer, inner))
         radius = np.linalg.norm(away[within], axis=-1)
         filled[plane][within] = (radius <= top) & (radius >= bottom)
+
+    side_by_side(fill, range(box.shape[0]))
     return filled

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from ..geometry.robust import cauchy_weights, reweighted_fit
+from ..geometry.side_by_side import side_by_side
 from ..geometry.slice_distance import plane_distances
 from ..grid import box_around
 from ..volume import Volume
@@ -116,14 +117,17 @@ def surface_radii(
     field = _field(bone, centre, rays[::8], level[::8])
     offsets = np.arange(-_DEPTH_MM, _HEIGHT_MM, _SAMPLE_MM)
     cells, start, step = _cells(field.voxels), field.to_voxel(centre), field.steps(rays).T
-    # samples about the expected surface, a few hundred rays at a time
     last, first = np.empty((2, len(rays)), np.int16)
     met = np.empty(len(rays), bool)
-    for some in np.array_split(np.arange(len(rays)), len(rays) // 500 + 1):
+
+    def sample(some: NDArray[np.intp]) -> None:
+        """Sample some rays about the expected surface."""
         at = start[:, None, None] + step[:, some, None] * (level[some, None] + offsets)
         in_bone = _is_bone(field.voxels, cells, at)
         last[some], first[some] = _nearest_run(in_bone, offsets)
         met[some] = in_bone.any(axis=1)
+
+    side_by_side(sample, np.array_split(np.arange(len(rays)), len(rays) // 500 + 1))
 
     def place(sample: NDArray[np.int16]) -> NDArray[np.float64]:
         """One sample of each ray, as an index into the field."""
