@@ -29,6 +29,7 @@ functions, the third order, the smoothing, the robust weights, the inner surface
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 from math import comb
@@ -126,7 +127,10 @@ def pieces(
     """
     # one symmetry plane serves all openings: it is the whole skull's
     learned = load_prior(Path(prior)) if prior else None
-    plane, found = _symmetry(bone, openings[0]) if mirror_mm else (None, {"unused": "not asked for"})
+    with ThreadPoolExecutor(1) as beside:
+        searched = beside.submit(_symmetry, bone, openings[0]) if mirror_mm else None
+        radius_measurement.measure_around(bone, openings[0])  # meanwhile; kept for its plate
+    plane, found = (None, {"unused": "not asked for"}) if searched is None else searched.result()
     record = {"symmetry": found} if learned is None else {"symmetry": found, "prior_skulls": len(learned.radii)}
     lengths = {"second_mm": second_mm, "third_mm": third_mm, "mirror_mm": mirror_mm}
     for opening in openings:

@@ -29,6 +29,7 @@ _FAR_APART_MM = 1.5  # between planes above which their stairs would show
 _BREAK_MM = 3.0  # without bone along a ray that is still diploe
 _FREE, _BONE, _NEITHER = 0, 1, 2  # what the corners of a cell have in common
 _BOUND_PX = 8.0  # up to which distances to an edge in a plane are told apart
+_AT_ONCE = 1000  # rays sampled at once: their samples stay in the cache
 _EVERY = 4  # rays of the map from one that the coarse pass follows to the next
 _STRAY_MM = 4.0  # off the fit by which an outermost voxel counts half
 _FADE_DEG = 25.0  # from where the fit matters most to where a ray counts a third
@@ -127,7 +128,7 @@ def surface_radii(
         last[some], first[some] = _nearest_run(in_bone, offsets)
         met[some] = in_bone.any(axis=1)
 
-    side_by_side(sample, np.array_split(np.arange(len(rays)), len(rays) // 500 + 1))
+    side_by_side(sample, np.array_split(np.arange(len(rays)), len(rays) // _AT_ONCE + 1))
 
     def place(sample: NDArray[np.int16]) -> NDArray[np.float64]:
         """One sample of each ray, as an index into the field."""
