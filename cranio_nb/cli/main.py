@@ -44,8 +44,8 @@ class ErrorGroup(click.Group):
         """
         try:
             return super().invoke(ctx)
-        except (click.ClickException, click.exceptions.Exit, click.Abort):
-            raise
+        except (click.ClickException, click.exceptions.Exit, click.Abort, BrokenPipeError):
+            raise  # as click ends them; who reads the output, as `| head`, may have read enough
         except Exception as error:
             if ctx.meta.get("debug"):
                 raise

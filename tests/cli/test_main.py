@@ -24,6 +24,17 @@ def test_unforeseen_errors_are_one_sentence_and_debug_shows_them(home, tmp_path,
     assert isinstance(cranio(*arguments, "--debug").exception, RuntimeError)
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes of Windows are not closed in the same way")
+def test_who_has_read_enough_hears_of_no_error(tmp_path):
+    """As `cranio-nb phantom | head -0` does: the output is closed before anything is written to it."""
+    reader, writer = os.pipe()
+    os.close(reader)
+    command = [sys.executable, "-m", "cranio_nb", "phantom", str(tmp_path / "head"), "--size", "tiny"]
+    done = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE, text=True, timeout=60, check=False)
+    os.close(writer)
+    assert done.stderr == "" and done.returncode == 1
+
+
 @pytest.mark.parametrize("command", [(), *[(name,) for name in sorted(main.commands)]], ids=str)
 def test_every_command_has_help_with_examples(command):
     result = cranio(*command, "--help")
