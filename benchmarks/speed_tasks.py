@@ -69,7 +69,8 @@ def checked_stl(ct: str, method: str, out: str) -> Figures:
     scan, _ = cn.read_ct(ct)
     bone = cn.segment(scan)
     made = cn.design(bone, scan=scan, method=method)
-    write_mesh(made.mesh, Path(out) / "prosthesis.stl", n_parts=cn.check_mesh(made.mesh).n_parts)
+    report = cn.check_mesh(made.mesh)
+    write_mesh(made.mesh, Path(out) / "prosthesis.stl", n_parts=report.n_parts, report=report)
     return {}
 
 

@@ -278,8 +278,8 @@ def _distance_field(inside: NDArray[np.bool_], grid: Volume) -> NDArray[np.float
     outer = ~inside & ndimage.binary_dilation(inside)
     place_in, place_out = grid.to_world(np.argwhere(inner)), grid.to_world(np.argwhere(outer))
     field = np.where(inside, 1.0, -1.0)
-    field[inner] = cKDTree(place_out).query(place_in)[0]
-    field[outer] = -cKDTree(place_in).query(place_out)[0]
+    field[inner] = cKDTree(place_out).query(place_in, workers=2)[0]
+    field[outer] = -cKDTree(place_in).query(place_out, workers=2)[0]
     return field
 
 
@@ -315,7 +315,26 @@ def _thin(inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
     Only there can the surface pass through itself within the boxes of half a voxel.
     """
     # what a cube of 2 voxels does not fit into, in the patch and in the space around it
-    cube = np.ones((2, 2, 2), bool)
     wide = np.pad(inside, 2)
-    thin = wide & ~ndimage.binary_opening(wide, cube) | ~wide & ~ndimage.binary_opening(~wide, cube)
-    return ndimage.binary_dilation(thin[2:-2, 2:-2, 2:-2], np.ones((3, 3, 3), bool), iterations=2)
+    fits, fits_outside = (_with_cubes(_corners_of_cubes(mask)) for mask in (wide, ~wide))
+    near = (wide ^ fits | ~wide ^ fits_outside)[2:-2, 2:-2, 2:-2]
+    for _ in range(4):  # two voxels further to all sides
+        near = _with_cubes(near)
+    return near[2:-2, 2:-2, 2:-2]
+
+
+def _corners_of_cubes(mask: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Where cubes of 2 voxels that fit into a mask have their first corner, one shorter along each axis."""
+    for axis in range(mask.ndim):
+        along = np.moveaxis(mask, axis, 0)
+        mask = np.moveaxis(along[:-1] & along[1:], 0, axis)
+    return mask
+
+
+def _with_cubes(corners: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """The voxels of cubes of 2 voxels with these first corners, one longer along each axis."""
+    for axis in range(corners.ndim):
+        along = np.moveaxis(np.pad(corners, [(0, int(k == axis)) for k in range(corners.ndim)]), axis, 0)
+        along[1:] |= along[:-1].copy()
+        corners = np.moveaxis(along, 0, axis)
+    return corners

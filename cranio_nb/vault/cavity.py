@@ -86,9 +86,10 @@ def enclosed(bone: NDArray[np.bool_]) -> NDArray[np.int8]:
         layers = np.moveaxis(bone, axis, 0)[order]
         # a line meets bone where its next voxel is bone or meets it: met[i, j, k] = (met | bone)[i - 1, j + a, k + b]
         (a, b), (rows, cols) = (1 + d for i, d in enumerate(direction) if i != axis), layers.shape[1:]
-        met = np.zeros_like(layers)
+        met, framed = np.zeros_like(layers), np.zeros((rows + 2, cols + 2), bool)
         for i in range(1, len(layers)):
-            met[i] = np.pad(met[i - 1] | layers[i - 1], 1)[a : a + rows, b : b + cols]
+            np.logical_or(met[i - 1], layers[i - 1], out=framed[1:-1, 1:-1])
+            met[i] = framed[a : a + rows, b : b + cols]
         count += np.moveaxis(met[order], 0, axis)
     return count
 

@@ -232,10 +232,12 @@ def _signs(
 def _sheet(bone: Volume, outermost: OutermostBone, rays: NDArray[np.bool_], radius: NDArray[np.float64]) -> Volume:
     """Voxels of a coarse sheet across one opening, about 4 mm thick; at the edge of the image where it is outside."""
     grid, radius = outermost.grid, np.minimum(radius, outermost.seen)
-    # three rays for one: they lie closer than the voxels of any scan
-    grown = ndimage.zoom(rays.astype(np.uint8), 3, order=0, grid_mode=True, mode="nearest").astype(bool)
+    # three rays for one: they lie closer than the voxels of any scan; one ray beside them is enough to find their place
+    (sides,) = ndimage.find_objects(rays.astype(np.uint8))
+    near = tuple(slice(max(side.start - 1, 0), side.stop + 1) for side in sides)
+    grown = ndimage.zoom(rays[near].astype(np.uint8), 3, order=0, grid_mode=True, mode="nearest").astype(bool)
     directions, lengths = (
-        np.stack([ndimage.zoom(a, 3, order=1, grid_mode=True, mode="nearest") for a in values], axis=-1)[grown]
+        np.stack([ndimage.zoom(a[near], 3, order=1, grid_mode=True, mode="nearest") for a in values], axis=-1)[grown]
         for values in (np.moveaxis(grid.directions, -1, 0), [radius])
     )
     depths = np.arange(0.0, 4.5, 0.5)
