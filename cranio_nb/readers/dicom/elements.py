@@ -41,7 +41,7 @@ class Elements:
     """
 
     def __init__(self, dataset: Dataset, converted: Converted | None = None) -> None:
-        self._dataset = dataset
+        self._dataset, self._charset = dataset, str(dataset.original_character_set)
         self._converted = {} if converted is None else converted
 
     def __contains__(self, keyword_or_tag: Any) -> bool:
@@ -96,12 +96,10 @@ class Elements:
 
     def _read(self, keyword: str) -> Any:
         """The value, from the last file where that said the same in the same way."""
-        tag = tag_for_keyword(keyword)
-        raw = None if tag is None or tag not in self._dataset else self._dataset.get_item(tag)
+        raw = self._dataset.get_item(tag_for_keyword(keyword) or keyword)
         if not isinstance(raw, RawDataElement) or keyword in _BY_OTHERS or raw.VR == "SQ" or raw.length > _LONGEST:
             return self._dataset.get(keyword)
-        charset = self._dataset.original_character_set
-        said = (raw.VR, raw.value, raw.is_implicit_VR, raw.is_little_endian, str(charset))
+        said = (raw.VR, raw.value, raw.is_implicit_VR, raw.is_little_endian, self._charset)
         before = self._converted.get(keyword)
         if before is None or before[0] != said:
             before = self._converted[keyword] = (said, self._dataset.get(keyword))
