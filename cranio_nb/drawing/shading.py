@@ -160,15 +160,17 @@ class Frame:
         return bool((at >= 0).all() and (at < self.shape[::-1]).all())
 
 
-def frame_around(meshes: Sequence[Mesh], towards: ArrayLike, *, px_mm: float, margin_mm: float = _MARGIN_MM) -> Frame:
+def frame_around(
+    meshes: Sequence[Mesh], axes: NDArray[np.float64], *, px_mm: float, margin_mm: float = _MARGIN_MM
+) -> Frame:
     """The frame in which meshes are seen whole.
 
     Parameters
     ----------
     meshes : sequence of Mesh
         World mm; one vertex at least.
-    towards : array_like, shape (3,)
-        From the head to the viewer, LPS.
+    axes : ndarray, shape (3, 3)
+        Of the view, as `view_axes` gives them.
     px_mm : float
         Size of a pixel.
     margin_mm : float
@@ -178,7 +180,6 @@ def frame_around(meshes: Sequence[Mesh], towards: ArrayLike, *, px_mm: float, ma
     -------
     Frame
     """
-    axes = view_axes(towards)
     across = np.concatenate([mesh.vertices for mesh in meshes]) @ axes.T
     low, high = across[:, :2].min(axis=0) - margin_mm, across[:, :2].max(axis=0) + margin_mm
     width, height = np.ceil((high - low) / px_mm).astype(int)
@@ -280,7 +281,7 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, s
     >>> picture.rgb.shape, picture.rgb[0, 0].tolist(), picture.rgb[6, 6].tolist()
     ((12, 12, 3), [1.0, 1.0, 1.0], [1.0, 0.0, 0.0])
     """
-    frame = frame_around([solid.mesh for solid in solids], towards, px_mm=px_mm)
+    frame = frame_around([solid.mesh for solid in solids], view_axes(towards), px_mm=px_mm)
     return picture_of([layer_of(solid, frame, shaded=shaded) for solid in solids], frame, outlined=shaded)
 
 

@@ -43,7 +43,8 @@ def test_solids_drawn_one_by_one_make_the_same_picture():
     """The depth of each pixel is that of the nearer of two pictures, and so is its colour."""
     solids = Solid(ball((0, -40, 0), 10), RED), Solid(ball((3, 40, 0), 20), GREEN)
     whole = shading.render(solids, (0.2, -1, 0.1))
-    frame = shading.frame_around([solid.mesh for solid in solids], (0.2, -1, 0.1), px_mm=0.5)
+    axes = shading.view_axes((0.2, -1, 0.1))
+    frame = shading.frame_around([solid.mesh for solid in solids], axes, px_mm=0.5)
     layers = [shading.layer_of(solid, frame) for solid in solids]
     picture = shading.picture_of(layers[::-1], frame)
     np.testing.assert_array_equal(picture.depth, np.maximum(layers[0].depth, layers[1].depth))
@@ -52,7 +53,7 @@ def test_solids_drawn_one_by_one_make_the_same_picture():
 
 
 def test_a_frame_holds_what_lies_within_its_margin():
-    frame = shading.frame_around([ball(radius=20)], (0, -1, 0), px_mm=0.5, margin_mm=3.0)
+    frame = shading.frame_around([ball(radius=20)], shading.view_axes((0, -1, 0)), px_mm=0.5, margin_mm=3.0)
     assert frame.holds(ball(radius=22.9)) and frame.holds(ball((0, -90, 2.9), 20))
     assert not frame.holds(ball((0, 0, 3.6), 20)) and not frame.holds(ball((-3.6, 0, 0), 20))
 

@@ -105,7 +105,7 @@ def skull_view(skull: Mesh, towards: ArrayLike, *, px_mm: float = 0.6) -> SkullV
     side = np.asarray(towards, float)
     if not len(skull.faces):
         return SkullView(skull, side, px_mm, None, None)
-    frame = frame_around([skull], side, px_mm=px_mm, margin_mm=_ROOM_MM)
+    frame = frame_around([skull], view_axes(side), px_mm=px_mm, margin_mm=_ROOM_MM)
     return SkullView(skull, side, px_mm, frame, layer_of(Solid(skull, rgb_shares(SKULL)), frame))
 
 
@@ -170,11 +170,12 @@ def distance_figure(
     near = np.asarray(towards, float) / np.linalg.norm(towards) * _LIFT_MM
     coloured = Solid(Mesh(surface.vertices + near, surface.faces), colour_scale(top_mm).to_rgba(distances)[:, :3])
     solids = [Solid(whole, rgb_shares(NO_VALUE)), coloured]
-    picture = render(solids, towards, px_mm=px_mm, shaded=False)
+    frame = frame_around([solid.mesh for solid in solids], view_axes(towards), px_mm=px_mm)
+    picture = picture_of([layer_of(solid, frame, shaded=False) for solid in solids], frame, outlined=False)
     figure, ax = _with_rim(picture)
-    x, y = picture.pixel_of(surface.vertices[np.argmax(distances)], view_axes(towards)) + _RIM_PX
+    x, y = picture.pixel_of(surface.vertices[np.argmax(distances)], frame.axes) + _RIM_PX
     ring_place(ax, x, y)
-    name_sides(ax, view_axes(towards))
+    name_sides(ax, frame.axes)
     scale_bar(ax, 20.0 / px_mm, "20 mm")
     return figure
 
