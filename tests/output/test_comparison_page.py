@@ -43,9 +43,9 @@ def test_all_maps_and_the_bar_have_the_scale_of_the_comparison(found, monkeypatc
 def test_all_pictures_of_a_view_are_seen_from_one_side(found, monkeypatch):
     seen = []
     draw = figures.view_figure
-    monkeypatch.setattr(figures, "view_figure", lambda *a, **k: seen.append((*a[2], k["px_mm"])) or draw(*a, **k))
+    monkeypatch.setattr(figures, "view_figure", lambda view, mesh: seen.append(view) or draw(view, mesh))
     comparison_page.comparison_page(found)
-    assert len(seen) == 6 and len(set(seen[:3])) == 1 and len(set(seen[3:])) == 1
+    assert len(seen) == 6 and len(set(seen[:3])) == 1 and len(set(seen[3:])) == 1 and seen[0].px_mm == seen[3].px_mm
 
 
 def test_without_a_truth(blind):

@@ -14,7 +14,7 @@ from cranio_nb.readers import Finding
 
 
 def page_of(result) -> str:
-    shapes = design_pictures.shape_shots(result.case, design_pictures.vault_of(result.case), result.prosthesis)
+    shapes = design_pictures.shape_shots(result.case, design_pictures.skull_views(result.case), result.prosthesis)
     return design_page.report_page(result, shapes | design_page.measure_shots(result))
 
 

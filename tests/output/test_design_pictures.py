@@ -8,8 +8,8 @@ from cranio_nb.output import design_pictures
 
 
 def test_the_first_view_faces_the_opening(result):
-    vault = design_pictures.vault_of(result.case)
-    found = design_pictures.view_shots(result.case, vault, result.prosthesis.mesh)
+    views = design_pictures.skull_views(result.case)
+    found = design_pictures.view_shots(result.case, views, result.prosthesis.mesh)
     captions = [shot.caption for shot in found]
     assert captions[0] == "Facing the opening" and len(captions) == 3 and "From the left" in captions
 

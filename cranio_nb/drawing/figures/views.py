@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...mesh import Mesh
 from ..palette import NO_VALUE, PROSTHESIS, SKULL, rgb_shares
-from ..shading import Frame, Layer, Picture, Solid, frame_around, layer_of, picture_of, render, view_axes
+from ..shading import Frame, Layer, Picture, Solid, frame_around, layer_of, picture_of, view_axes
 from .axes import colour_scale, name_sides, ring_place, scale_bar, show_pixels
 
 if TYPE_CHECKING:
@@ -130,12 +130,14 @@ def view_figure(view: SkullView, prosthesis: Mesh) -> Figure:
     >>> [text.get_text() for text in figure.axes[0].texts]
     ['L', 'R', 'S', 'I', '50 mm']
     """
-    plate = Solid(prosthesis, rgb_shares(PROSTHESIS))
-    if view.frame is not None and view.layer is not None and view.frame.holds(prosthesis):
-        picture = picture_of([view.layer, layer_of(plate, view.frame)], view.frame)
-    else:  # there is no skull, or the prosthesis stands out of it farther than there is room
-        solids = [Solid(view.skull, rgb_shares(SKULL)), plate] if len(view.skull.faces) else [plate]
-        picture = render(solids, view.towards, px_mm=view.px_mm)
+    plate, frame, layers = Solid(prosthesis, rgb_shares(PROSTHESIS)), view.frame, [view.layer]
+    if frame is None or not frame.holds(prosthesis):
+        # there is no skull, or the prosthesis stands out of it farther than there is room
+        skull = [Solid(view.skull, rgb_shares(SKULL))] if len(view.skull.faces) else []
+        meshes = [solid.mesh for solid in (*skull, plate)]
+        frame = frame_around(meshes, view_axes(view.towards), px_mm=view.px_mm)
+        layers = [layer_of(solid, frame) for solid in skull]
+    picture = picture_of([layer for layer in (*layers, layer_of(plate, frame)) if layer], frame)
     figure, ax = _with_rim(picture)
     name_sides(ax, view_axes(view.towards))
     scale_bar(ax, 50.0 / view.px_mm, "50 mm")
