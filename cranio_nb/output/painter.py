@@ -158,6 +158,7 @@ def paint_for_parent() -> None:
     from .design_pictures import shape_shots, skull_views
     from .pages import page_template, shot
 
+    answer, sys.stdout = sys.stdout.buffer, sys.stderr  # what a library prints is no answer
     # what takes time to load, while the scan is read
     shot(figures.colour_bar_figure(1.0, ""), alt="", caption="")
     page_template("design_page.html")
@@ -168,7 +169,8 @@ def paint_for_parent() -> None:
         shots = shape_shots(case, views, made)
         result: RunResult = _received(sys.stdin.buffer, _known(case, made))
         page = report_page(result, shots | measure_shots(result))
-        pickle.dump(page, sys.stdout.buffer, protocol=pickle.HIGHEST_PROTOCOL)
+        pickle.dump(page, answer, protocol=pickle.HIGHEST_PROTOCOL)
+        answer.flush()
 
 
 def _known(case: Prepared, made: Prosthesis | None = None) -> Known:

@@ -78,6 +78,14 @@ def test_where_the_process_dies_the_page_is_made_here(program, case, run, here, 
     assert processes[0].wait(60) is not None
 
 
+def test_what_a_library_prints_in_the_process_is_no_page(case, run, here, processes, monkeypatch):
+    loud = "from cranio_nb.output import design_pictures as d; draw = d.skull_views;"
+    loud += "d.skull_views = lambda case: print('a remark', flush=True) or draw(case);"
+    monkeypatch.setattr(painter, "_PROGRAM", loud + painter._PROGRAM)
+    monkeypatch.setattr("cranio_nb.output.design_pictures.shape_shots", lambda *_: pytest.fail("drawn here"))
+    assert painted(case, run) == here
+
+
 def test_where_no_process_can_be_started_the_page_is_made_here(case, run, here, monkeypatch):
     monkeypatch.setattr(painter, "_n_processors", lambda: 2)
     monkeypatch.setattr(sys, "executable", "/nowhere/python")
