@@ -36,8 +36,10 @@ class Elements:
     >>> dataset = Dataset()
     >>> dataset.Modality, dataset.PixelSpacing, dataset.Rows = "CT", [0.5, 0.5], 512
     >>> elements = Elements(dataset)
-    >>> elements.text("Modality"), elements.vector("PixelSpacing", 2), elements.integer("Rows"), elements.text("Side")
-    ('CT', array([0.5, 0.5]), 512, '')
+    >>> elements.text("Modality"), elements.vector("PixelSpacing", 2), elements.integer("Rows")
+    ('CT', array([0.5, 0.5]), 512)
+    >>> elements.text("StudyID"), elements.number("RescaleSlope")
+    ('', None)
     """
 
     def __init__(self, dataset: Dataset, converted: Converted | None = None) -> None:
@@ -86,17 +88,25 @@ class Elements:
         -------
         Any
             None where absent or empty, NaN where its text is not of its kind.
+
+        Raises
+        ------
+        KeyError
+            For a keyword that DICOM does not know.
         """
+        tag = tag_for_keyword(keyword)
+        if tag is None:
+            raise KeyError(keyword)
         try:
-            value = self._read(keyword)
+            value = self._read(keyword, tag)
         except Exception:
             # a value that cannot be converted, e.g. letters in a number
             return float("nan")
         return None if value is None or (isinstance(value, str) and not value.strip()) else value
 
-    def _read(self, keyword: str) -> Any:
+    def _read(self, keyword: str, tag: int) -> Any:
         """The value, from the last file where that said the same in the same way."""
-        raw = self._dataset.get_item(tag_for_keyword(keyword) or keyword)
+        raw = self._dataset.get_item(tag)
         if not isinstance(raw, RawDataElement) or keyword in _BY_OTHERS or raw.VR == "SQ" or raw.length > _LONGEST:
             return self._dataset.get(keyword)
         said = (raw.VR, raw.value, raw.is_implicit_VR, raw.is_little_endian, self._charset)

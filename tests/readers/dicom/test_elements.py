@@ -64,6 +64,11 @@ def test_what_is_not_of_its_kind_is_no_number_again_and_again():
     assert Elements(read_back(Rows=4), converted).number("RescaleSlope") is None
 
 
+def test_a_keyword_that_there_is_not_is_a_mistake_of_the_program():
+    with pytest.raises(KeyError, match="Slope"):
+        Elements(read_back(Rows=4)).number("Slope")
+
+
 def test_items_of_sequences_have_their_own_values():
     item, other = Dataset(), Dataset()
     item.RescaleSlope, other.RescaleSlope = 2, 3
