@@ -128,9 +128,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         found = measure(asked, Path(folder))
     if asked.store:
-        # growth curves of an earlier run stay beside new rows
+        # growth curves of an earlier run stay beside new rows, with their own date
         before = json.loads(asked.store.read_text()) if asked.store.exists() else {}
-        found = ({"growth": before["growth"]} if "growth" in before else {}) | found
+        if "growth" in before and "growth" not in found:
+            date = before.get("growth_date", before["machine"]["date"])
+            found |= {"growth": before["growth"], "growth_date": date}
         asked.store.write_text(json.dumps(found, indent=1) + "\n")
     print("\n".join(lines(found)))
 

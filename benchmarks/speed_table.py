@@ -37,6 +37,9 @@ def lines(found: Mapping[str, Any]) -> Iterator[str]:
     yield from _memory_line(rows, found["series"]["shape"])
     yield from _stage_table(rows)
     yield from _inside_tables(rows)
+    if "growth_date" in found:
+        yield f"The growth curves are of {found['growth_date']}, an earlier run; their seconds are not those above."
+        yield ""
     yield from _growth_table(found.get("growth", ()))
 
 

@@ -97,9 +97,9 @@ def stages(source: str, method: str, out: str) -> Figures:
     timed.lap("record")
     without = sum(timed.seconds.values())
     from cranio_nb.output.design_page import measure_shots, report_page
-    from cranio_nb.output.design_pictures import shape_shots, vault_of
+    from cranio_nb.output.design_pictures import shape_shots, skull_views
 
-    report_page(result, shape_shots(case, vault_of(case), result.prosthesis) | measure_shots(result))
+    report_page(result, shape_shots(case, skull_views(case), result.prosthesis) | measure_shots(result))
     timed.lap("report")
     return timed.seconds | {"without report": without}
 

@@ -78,6 +78,8 @@ class TestTables:
         found = {"rows": {}, "series": {"shape": (1, 1, 1)}, "growth": growth}
         text = "\n".join(speed_table.lines(found))
         assert "| slicewise, 10 to 40 slices | 10.0 to 40.0 | 100 to 100 | 1.00 | 1.00 | 0.00 |" in text
+        assert "earlier" not in text
+        assert "of 2026-01-31, an earlier run" in "\n".join(speed_table.lines(found | {"growth_date": "2026-01-31"}))
 
 
 class TestCases:
