@@ -21,6 +21,43 @@ _MOST_STEPS = 400  # samples along the longest edge of a face
 
 
 @dataclass(frozen=True, eq=False)
+class Frame:
+    """What a picture shows: its axes and the part of the view that lies in it.
+
+    Parameters
+    ----------
+    axes : ndarray, shape (3, 3)
+        Of the view, as `view_axes` gives them.
+    corner : ndarray, shape (2,)
+        Upper left corner along the axes of the view, mm.
+    shape : tuple of int
+        Height and width, px.
+    px_mm : float
+        Size of a pixel.
+    """
+
+    axes: NDArray[np.float64]
+    corner: NDArray[np.float64]
+    shape: tuple[int, int]
+    px_mm: float
+
+    def holds(self, mesh: Mesh) -> bool:
+        """Whether a mesh is seen whole.
+
+        Parameters
+        ----------
+        mesh : Mesh
+            World mm.
+
+        Returns
+        -------
+        bool
+        """
+        at = (mesh.vertices @ self.axes[:2].T - self.corner) / self.px_mm
+        return bool((at >= 0).all() and (at < self.shape[::-1]).all())
+
+
+@dataclass(frozen=True, eq=False)
 class Picture:
     """A rendered view.
 
@@ -30,33 +67,29 @@ class Picture:
         0 to 1; white where there is nothing.
     depth : ndarray, shape (H, W)
         mm towards the viewer; -inf where there is nothing.
-    px_mm : float
-        Size of a pixel.
-    corner : ndarray, shape (2,)
-        Upper left corner along the axes of the view, to the right and down, mm.
+    frame : Frame
+        What it shows.
     """
 
     rgb: NDArray[np.float32]
     depth: NDArray[np.float32]
-    px_mm: float
-    corner: NDArray[np.float64]
+    frame: Frame
 
-    def pixel_of(self, point: ArrayLike, axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    def pixel_of(self, point: ArrayLike) -> NDArray[np.float64]:
         """Where a place of the world is seen.
 
         Parameters
         ----------
         point : array_like, shape (3,)
             World mm.
-        axes : ndarray, shape (3, 3)
-            Of the view, as `view_axes` gives them.
 
         Returns
         -------
         ndarray, shape (2,)
             Fractional pixels to the right and down.
         """
-        return (axes[:2] @ np.asarray(point, float) - self.corner) / self.px_mm - 0.5
+        frame = self.frame
+        return (frame.axes[:2] @ np.asarray(point, float) - frame.corner) / frame.px_mm - 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,43 +156,6 @@ def up_in_view(towards: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.array([0.0, 0.0, 1.0]) if abs(towards[2]) < 0.95 else np.array([0.0, -1.0, 0.0])
 
 
-@dataclass(frozen=True, eq=False)
-class Frame:
-    """What a picture shows: its axes and the part of the view that lies in it.
-
-    Parameters
-    ----------
-    axes : ndarray, shape (3, 3)
-        Of the view, as `view_axes` gives them.
-    corner : ndarray, shape (2,)
-        Upper left corner along the axes of the view, mm.
-    shape : tuple of int
-        Height and width, px.
-    px_mm : float
-        Size of a pixel.
-    """
-
-    axes: NDArray[np.float64]
-    corner: NDArray[np.float64]
-    shape: tuple[int, int]
-    px_mm: float
-
-    def holds(self, mesh: Mesh) -> bool:
-        """Whether a mesh is seen whole.
-
-        Parameters
-        ----------
-        mesh : Mesh
-            World mm.
-
-        Returns
-        -------
-        bool
-        """
-        at = (mesh.vertices @ self.axes[:2].T - self.corner) / self.px_mm
-        return bool((at >= 0).all() and (at < self.shape[::-1]).all())
-
-
 def frame_around(
     meshes: Sequence[Mesh], axes: NDArray[np.float64], *, px_mm: float, margin_mm: float = _MARGIN_MM
 ) -> Frame:
@@ -186,23 +182,7 @@ def frame_around(
     return Frame(axes, low, (int(height), int(width)), px_mm)
 
 
-@dataclass(frozen=True, eq=False)
-class Layer:
-    """One solid as it is seen in a frame.
-
-    Parameters
-    ----------
-    rgb : ndarray, shape (H, W, 3)
-        0 to 1; white where it is not.
-    depth : ndarray, shape (H, W)
-        mm towards the viewer; -inf where it is not.
-    """
-
-    rgb: NDArray[np.float32]
-    depth: NDArray[np.float32]
-
-
-def layer_of(solid: Solid, frame: Frame, *, shaded: bool = True) -> Layer:
+def draw_solid(solid: Solid, frame: Frame, *, shaded: bool = True) -> Picture:
     """Draw one solid with a depth buffer and light from the upper left.
 
     Parameters
@@ -215,7 +195,8 @@ def layer_of(solid: Solid, frame: Frame, *, shaded: bool = True) -> Layer:
 
     Returns
     -------
-    Layer
+    Picture
+        Without outlines.
     """
     # in the frame of the view (right, down, towards the viewer), from mm to pixels
     mesh = solid.mesh
@@ -232,17 +213,16 @@ def layer_of(solid: Solid, frame: Frame, *, shaded: bool = True) -> Layer:
         colour = _lit(colour, np.einsum("nc,ncd->nd", share, normals[corners]))
     rgb = np.ones((*frame.shape, 3), np.float32)
     rgb[hit] = colour
-    return Layer(rgb, depth)
+    return Picture(rgb, depth, frame)
 
 
-def picture_of(layers: Sequence[Layer], frame: Frame, *, outlined: bool = True) -> Picture:
-    """The nearest of several layers in each pixel.
+def nearest_of(pictures: Sequence[Picture], *, outlined: bool = True) -> Picture:
+    """The nearest of several solids in each pixel.
 
     Parameters
     ----------
-    layers : sequence of Layer
-        Drawn in the frame.
-    frame : Frame
+    pictures : sequence of Picture
+        One of each solid, all in one frame.
     outlined : bool
         Darken rims and silhouettes.
 
@@ -250,11 +230,12 @@ def picture_of(layers: Sequence[Layer], frame: Frame, *, outlined: bool = True) 
     -------
     Picture
     """
-    rgb, depth = layers[0].rgb, layers[0].depth
-    for layer in layers[1:]:
-        nearer = layer.depth > depth
-        rgb, depth = np.where(nearer[..., None], layer.rgb, rgb), np.maximum(layer.depth, depth)
-    return Picture(_outlined(rgb, depth) if outlined else rgb, depth, frame.px_mm, frame.corner)
+    first, *others = pictures
+    rgb, depth = first.rgb, first.depth
+    for other in others:
+        rgb = np.where((other.depth > depth)[..., None], other.rgb, rgb)
+        depth = np.maximum(other.depth, depth)
+    return Picture(_outlined(rgb, depth) if outlined else rgb, depth, first.frame)
 
 
 def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, shaded: bool = True) -> Picture:
@@ -282,7 +263,7 @@ def render(solids: Sequence[Solid], towards: ArrayLike, *, px_mm: float = 0.5, s
     ((12, 12, 3), [1.0, 1.0, 1.0], [1.0, 0.0, 0.0])
     """
     frame = frame_around([solid.mesh for solid in solids], view_axes(towards), px_mm=px_mm)
-    return picture_of([layer_of(solid, frame, shaded=shaded) for solid in solids], frame, outlined=shaded)
+    return nearest_of([draw_solid(solid, frame, shaded=shaded) for solid in solids], outlined=shaded)
 
 
 def _scan(

@@ -104,7 +104,9 @@ class Painter:
     def _see(self, case: Prepared) -> Views | None:
         """Show the case to the process, or draw the skull here."""
         # of the openings that stay open the size is shown; a sheet of each is as large as the scan, and is not
-        unseen = {f"left open {one.number}": one.opening for one in case.left_open if one.size}
+        for one in case.left_open:
+            _ = one.size  # measured while there is a sheet, and kept
+        unseen = {f"left open {one.number}": one.opening for one in case.left_open}
         if self._process is not None and self._tell(case, unseen):
             _ = case.digests  # made now, beside the design
             return None

@@ -14,10 +14,10 @@ RED, GREEN = np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0])
 def test_a_ball_looks_round_from_everywhere(towards):
     picture = shading.render([Solid(ball(), RED)], towards, px_mm=0.25)
     seen = np.isfinite(picture.depth)
-    assert seen.sum() * picture.px_mm**2 == pytest.approx(np.pi * 20**2, rel=0.02)
+    assert seen.sum() * picture.frame.px_mm**2 == pytest.approx(np.pi * 20**2, rel=0.02)
     assert picture.depth.max() == pytest.approx(20, abs=0.1)
     rows, cols = np.nonzero(seen)
-    distance = np.hypot(rows - rows.mean(), cols - cols.mean()) * picture.px_mm
+    distance = np.hypot(rows - rows.mean(), cols - cols.mean()) * picture.frame.px_mm
     inside = distance < 18
     depth = picture.depth[rows, cols]
     np.testing.assert_allclose(depth[inside], np.sqrt(400 - distance[inside] ** 2), atol=0.6)
@@ -27,7 +27,7 @@ def test_no_pixel_is_missed_inside():
     picture = shading.render([Solid(ball(), RED)], (0.2, 0.5, 0.6), px_mm=0.11)
     rows, cols = np.indices(picture.depth.shape)
     middle = (np.array(picture.depth.shape) - 1) / 2
-    inside = np.hypot(rows - middle[0], cols - middle[1]) * picture.px_mm < 19
+    inside = np.hypot(rows - middle[0], cols - middle[1]) * picture.frame.px_mm < 19
     assert np.isfinite(picture.depth[inside]).all()
 
 
@@ -45,9 +45,9 @@ def test_solids_drawn_one_by_one_make_the_same_picture():
     whole = shading.render(solids, (0.2, -1, 0.1))
     axes = shading.view_axes((0.2, -1, 0.1))
     frame = shading.frame_around([solid.mesh for solid in solids], axes, px_mm=0.5)
-    layers = [shading.layer_of(solid, frame) for solid in solids]
-    picture = shading.picture_of(layers[::-1], frame)
-    np.testing.assert_array_equal(picture.depth, np.maximum(layers[0].depth, layers[1].depth))
+    each = [shading.draw_solid(solid, frame) for solid in solids]
+    picture = shading.nearest_of(each[::-1])
+    np.testing.assert_array_equal(picture.depth, np.maximum(each[0].depth, each[1].depth))
     np.testing.assert_array_equal(picture.depth, whole.depth)
     np.testing.assert_array_equal(picture.rgb, whole.rgb)
 
@@ -84,6 +84,6 @@ def test_a_place_is_told_its_pixel():
     mesh, towards = ball((3, -7, 11), 20), (0.3, -0.8, 0.4)
     picture, axes = shading.render([Solid(mesh, RED)], towards, px_mm=0.25), shading.view_axes(towards)
     nearest = mesh.vertices[np.argmax(mesh.vertices @ axes[2])]
-    col, row = np.rint(picture.pixel_of(nearest, axes)).astype(int)
+    col, row = np.rint(picture.pixel_of(nearest)).astype(int)
     assert picture.depth[row, col] == pytest.approx(picture.depth.max(), abs=0.01)
     assert picture.depth[row, col] == pytest.approx(nearest @ axes[2], abs=0.01)

@@ -221,7 +221,7 @@ def view_panel(
     """
     picture = render(solids, towards, px_mm=px_mm, shaded=shaded)
     rows, cols = picture.depth.shape
-    left, top = picture.corner
+    left, top = picture.frame.corner
     right, bottom = left + cols * px_mm, top + rows * px_mm
     free = _RIM_SHARE * max(right - left, bottom - top)
     ax.imshow(picture.rgb, extent=(left, right, bottom, top))

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ...mesh import Mesh
 from ..palette import NO_VALUE, PROSTHESIS, SKULL, rgb_shares
-from ..shading import Frame, Layer, Picture, Solid, frame_around, layer_of, picture_of, view_axes
+from ..shading import Picture, Solid, draw_solid, frame_around, nearest_of, view_axes
 from .axes import colour_scale, name_sides, ring_place, scale_bar, show_pixels
 
 if TYPE_CHECKING:
@@ -73,17 +73,14 @@ class SkullView:
         From the head to the viewer, LPS.
     px_mm : float
         Size of a pixel.
-    frame : Frame or None
-        With room for a prosthesis; None for an empty skull.
-    layer : Layer or None
-        The skull in it.
+    picture : Picture or None
+        The skull with room for a prosthesis around it; None for an empty skull.
     """
 
     skull: Mesh
     towards: NDArray[np.float64]
     px_mm: float
-    frame: Frame | None
-    layer: Layer | None
+    picture: Picture | None
 
 
 def skull_view(skull: Mesh, towards: ArrayLike, *, px_mm: float = 0.6) -> SkullView:
@@ -104,9 +101,9 @@ def skull_view(skull: Mesh, towards: ArrayLike, *, px_mm: float = 0.6) -> SkullV
     """
     side = np.asarray(towards, float)
     if not len(skull.faces):
-        return SkullView(skull, side, px_mm, None, None)
+        return SkullView(skull, side, px_mm, None)
     frame = frame_around([skull], view_axes(side), px_mm=px_mm, margin_mm=_ROOM_MM)
-    return SkullView(skull, side, px_mm, frame, layer_of(Solid(skull, rgb_shares(SKULL)), frame))
+    return SkullView(skull, side, px_mm, draw_solid(Solid(skull, rgb_shares(SKULL)), frame))
 
 
 def view_figure(view: SkullView, prosthesis: Mesh) -> Figure:
@@ -130,14 +127,13 @@ def view_figure(view: SkullView, prosthesis: Mesh) -> Figure:
     >>> [text.get_text() for text in figure.axes[0].texts]
     ['L', 'R', 'S', 'I', '50 mm']
     """
-    plate, frame, layers = Solid(prosthesis, rgb_shares(PROSTHESIS)), view.frame, [view.layer]
-    if frame is None or not frame.holds(prosthesis):
-        # there is no skull, or the prosthesis stands out of it farther than there is room
-        skull = [Solid(view.skull, rgb_shares(SKULL))] if len(view.skull.faces) else []
-        meshes = [solid.mesh for solid in (*skull, plate)]
-        frame = frame_around(meshes, view_axes(view.towards), px_mm=view.px_mm)
-        layers = [layer_of(solid, frame) for solid in skull]
-    picture = picture_of([layer for layer in (*layers, layer_of(plate, frame)) if layer], frame)
+    plate, seen = Solid(prosthesis, rgb_shares(PROSTHESIS)), view.picture
+    if seen is not None and seen.frame.holds(prosthesis):
+        picture = nearest_of([seen, draw_solid(plate, seen.frame)])
+    else:  # there is no skull, or the prosthesis stands out of it farther than there is room
+        solids = [Solid(view.skull, rgb_shares(SKULL)), plate] if len(view.skull.faces) else [plate]
+        frame = frame_around([solid.mesh for solid in solids], view_axes(view.towards), px_mm=view.px_mm)
+        picture = nearest_of([draw_solid(solid, frame) for solid in solids])
     figure, ax = _with_rim(picture)
     name_sides(ax, view_axes(view.towards))
     scale_bar(ax, 50.0 / view.px_mm, "50 mm")
@@ -173,9 +169,9 @@ def distance_figure(
     coloured = Solid(Mesh(surface.vertices + near, surface.faces), colour_scale(top_mm).to_rgba(distances)[:, :3])
     solids = [Solid(whole, rgb_shares(NO_VALUE)), coloured]
     frame = frame_around([solid.mesh for solid in solids], view_axes(towards), px_mm=px_mm)
-    picture = picture_of([layer_of(solid, frame, shaded=False) for solid in solids], frame, outlined=False)
+    picture = nearest_of([draw_solid(solid, frame, shaded=False) for solid in solids], outlined=False)
     figure, ax = _with_rim(picture)
-    x, y = picture.pixel_of(surface.vertices[np.argmax(distances)], frame.axes) + _RIM_PX
+    x, y = picture.pixel_of(surface.vertices[np.argmax(distances)]) + _RIM_PX
     ring_place(ax, x, y)
     name_sides(ax, frame.axes)
     scale_bar(ax, 20.0 / px_mm, "20 mm")

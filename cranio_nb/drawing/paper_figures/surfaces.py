@@ -143,7 +143,8 @@ def figure_10(skull: Mesh, rival: Mesh, prosthesis: Mesh, truth: Mesh, towards: 
 def _draw_silhouette(ax: Axes, picture: Picture) -> None:
     """Draw the outline of what a picture shows."""
     rows, cols = (np.arange(n) + 0.5 for n in picture.depth.shape)
-    x, y = (start + picture.px_mm * steps for start, steps in zip(picture.corner, (cols, rows), strict=True))
+    frame = picture.frame
+    x, y = (start + frame.px_mm * steps for start, steps in zip(frame.corner, (cols, rows), strict=True))
     ax.contour(x, y, np.isfinite(picture.depth), levels=[0.5], colors=[TRUTH], linewidths=1.6)
 
 

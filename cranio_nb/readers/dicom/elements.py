@@ -61,8 +61,8 @@ class Elements:
         Elements or None
             None where there is none.
         """
-        items = self.items(keyword)
-        return items[0] if items else None
+        items = self._dataset.get(keyword)
+        return Elements(items[0], self._converted) if items else None
 
     def items(self, keyword: str) -> list[Elements]:
         """All items of a sequence.

@@ -28,13 +28,10 @@ class Head:
     ----------
     ax : Axes
     picture : Picture
-    axes : ndarray, shape (3, 3)
-        To the right, down and towards the viewer, world.
     """
 
     ax: Axes
     picture: shading.Picture
-    axes: NDArray[np.float64]
 
     def place(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Where places are drawn.
@@ -48,7 +45,7 @@ class Head:
         -------
         ndarray, shape (n, 2)
         """
-        return np.array([self.picture.pixel_of(point, self.axes) for point in points])
+        return np.array([self.picture.pixel_of(point) for point in points])
 
 
 def draw_head(figure: Figure, box: tuple[float, float, float, float], bone: Volume, towards: ArrayLike) -> Head:
@@ -76,6 +73,5 @@ def draw_head(figure: Figure, box: tuple[float, float, float, float], bone: Volu
     ax = marks.plane(figure, box, (0, 0), wide)
     ax.imshow(seen.rgb, extent=(-0.5, width - 0.5, height - 0.5, -0.5), interpolation="nearest", aspect="auto")
     ax.set(xlim=((width - wide) / 2, (width + wide) / 2), ylim=((height + high) / 2, (height - high) / 2))
-    axes = shading.view_axes(towards)
-    marks.sides(ax, axes[:2])
-    return Head(ax, seen, axes)
+    marks.sides(ax, seen.frame.axes[:2])
+    return Head(ax, seen)

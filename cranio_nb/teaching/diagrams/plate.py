@@ -119,7 +119,7 @@ def _draw_head(figure: Figure, bone: Volume, radius_map: RadiusMap, radius: Arra
         """Where places are drawn; nan for those on the far side."""
         points = on_surface(grid, radius, polar, around)
         away = points - grid.centre
-        hidden = away @ head.axes[2] < _TOWARDS_VIEWER * np.linalg.norm(away, axis=1)
+        hidden = away @ head.picture.frame.axes[2] < _TOWARDS_VIEWER * np.linalg.norm(away, axis=1)
         return np.where(hidden[:, None], np.nan, head.place(points))
 
     head.ax.fill(*placed(*rim_angles(radius_map)).T, fc=faded(PATCH), ec=BLACK, lw=1.6)
