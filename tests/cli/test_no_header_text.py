@@ -17,8 +17,9 @@ from data_synth.files import write_case
 
 RUN = "from cranio_nb.cli.main import main; main()"
 MARK = "QJXZWVK"  # of every text that is planted
-FIGURES = "40977"  # of every number
-NUMBER = {"IS": f"{FIGURES}%05d", "DS": f"{FIGURES}.%05d", "TM": f"11{FIGURES[:2]}59.%06d"}
+FIGURES = "40977"  # begins every number but a time
+CLOCK = "114059"  # begins every time
+NUMBER = {"IS": f"{FIGURES}%05d", "DS": f"{FIGURES}.%05d", "TM": f"{CLOCK}.%06d"}
 NUMBER |= {"DA": "40977%03d", "DT": "4097%04d"}
 LONG = {"LT", "ST", "UT", "UC", "UR"}
 TEXT = {"PN", "LO", "SH", "CS", "AE", "AS", *LONG}
@@ -78,8 +79,9 @@ def all_of(folder, *arguments):
 
 
 def found(text):
-    """What was planted and is there."""
-    return re.findall(rb"(?i)" + MARK.encode() + rb".{0,20}|.{0,9}" + FIGURES.encode() + rb"[0-9.]{3,}", text)
+    """What was planted and is there; digits in the middle of a number, as of a time measured, are none of it."""
+    number = f"(?<![0-9.])(?:1\\.2\\.)?(?:{FIGURES}|{CLOCK})[0-9.]{{3,}}"
+    return re.findall(f"(?i){MARK}.{{0,20}}|{number}".encode(), text)
 
 
 NOTEBOOK = """
@@ -103,6 +105,8 @@ def in_a_notebook(scan):
 def test_the_search_finds_what_is_planted(series):
     text = next((series / "ct").iterdir()).read_bytes()
     assert len(found(text)) > 1500 and found(b'"series": 4097700012') and found(b"kernel qjxzwvk 00012")
+    assert found(b"1.2.40977.17") and found(b"at 114059.000012") and found(b"40977.00012 mm")
+    assert not found(b'"design": 1.4097750450018793')
 
 
 @pytest.mark.parametrize(
