@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from importlib.metadata import version
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 from ..errors import InputRefused, NoOpening
 from ..geometry import face_sides
 from ..grid import true_indices
+from ..mesh import Mesh
 from ..opening import Opening
 from ..prosthesis import Prosthesis
 from ..stages import surface_reconstruction
@@ -25,6 +27,7 @@ from .catalogue import COMMON, check_options, check_preset, default_options, fin
 from .piece import Piece
 
 Progress = Callable[[str, float], None]
+Shaped = Callable[[Prosthesis], None]
 _SURFACE = 0.9  # part of the work that is done when all pieces are made
 
 
@@ -36,6 +39,7 @@ def design(
     method: str = "slicewise",
     preset: str = "default",
     progress: Progress | None = None,
+    shaped: Shaped | None = None,
     **options: Any,
 ) -> Prosthesis:
     """Design what closes the openings of a skull.
@@ -54,6 +58,8 @@ def design(
         Options to start from: "default", or a preset of the method such as "paper".
     progress : callable, optional
         Called with (stage, fraction done).
+    shaped : callable, optional
+        Called with the prosthesis before it has a surface and a record: pictures of its voxels may begin.
     **options
         Options of the method that differ from the preset. Every method has `smooth`: a surface without stairs (see
         `surface_reconstruction.extract_surface`).
@@ -88,7 +94,7 @@ def design(
     check_options(method, parameters)  # a preset may add to what was asked for
     own = {name: value for name, value in parameters.items() if name not in COMMON}
     pieces = find_method(method).pieces(bone, openings, **own)
-    return assemble(bone, openings, pieces, method=method, parameters=parameters, progress=progress)
+    return assemble(bone, openings, pieces, method=method, parameters=parameters, progress=progress, shaped=shaped)
 
 
 def assemble(
@@ -99,6 +105,7 @@ def assemble(
     method: str,
     parameters: dict[str, Any],
     progress: Progress | None = None,
+    shaped: Shaped | None = None,
 ) -> Prosthesis:
     """Join the pieces of a method, give them a surface and a record.
 
@@ -116,6 +123,8 @@ def assemble(
         Every option of the method; `smooth` is heeded here.
     progress : callable, optional
         Called with (stage, fraction done).
+    shaped : callable, optional
+        As for `design`.
 
     Returns
     -------
@@ -148,13 +157,16 @@ def assemble(
     if not patch.any():
         message = f"The method {method} could not bridge any part of the opening."
         raise NoOpening("NothingBridged", message, "Try another method or preset.")
+    no_mesh = Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+    shape = Prosthesis(no_mesh, np.zeros(0, np.uint8), bone.with_voxels(patch), method, parameters, {}, tuple(working))
+    if shaped is not None:
+        shaped(shape)
     report("surface", _SURFACE)
     # stage 5 and the sides, from the joined voxels: openings may touch
-    solid = bone.with_voxels(patch)
-    mesh = surface_reconstruction.extract_surface(solid, smooth=parameters["smooth"])
+    mesh = surface_reconstruction.extract_surface(bone.with_voxels(patch), smooth=parameters["smooth"])
     sides = face_sides.label_faces(mesh, bone, openings[0].head_centre)
     record = {"version": version("cranio-nb"), "seconds": time.perf_counter() - began, **join_records(records)}
-    return Prosthesis(mesh, sides, solid, method, parameters, record, tuple(working))
+    return replace(shape, mesh=mesh, sides=sides, record=record)
 
 
 def join_records(records: Sequence[dict[str, Any]]) -> dict[str, Any]:

@@ -61,7 +61,7 @@ def run_and_draw(painter: Painter, case: Prepared, **options: Any) -> tuple[RunR
         As `run_design`.
     """
     painter.look_at(case)
-    result = run_design(case, designed=painter.draw, **options)
+    result = run_design(case, shaped=painter.draw_patch, designed=painter.draw, **options)
     return result, painter.page(result)
 
 

@@ -45,8 +45,26 @@ def skull_views(case: Prepared) -> Views:
     return {name: figures.skull_view(vault, towards) for name, towards in sides.items()}
 
 
-def shape_shots(case: Prepared, views: Views, made: Prosthesis) -> dict[str, list[Shot]]:
-    """All pictures that need no measures.
+def patch_shots(case: Prepared, made: Prosthesis) -> dict[str, list[Shot]]:
+    """All pictures that need neither a surface nor measures.
+
+    Parameters
+    ----------
+    case : Prepared
+    made : Prosthesis
+        Designed for it; its mesh may still be missing.
+
+    Returns
+    -------
+    dict of str to list of Shot
+        "cuts" and "slices".
+    """
+    made = made.cropped()  # no picture looks beyond its box
+    return {"cuts": cut_shots(case, made), "slices": slice_shots(case, made)}
+
+
+def surface_shots(case: Prepared, views: Views, made: Prosthesis) -> dict[str, list[Shot]]:
+    """All pictures that need the surface, and no measures.
 
     Parameters
     ----------
@@ -59,14 +77,9 @@ def shape_shots(case: Prepared, views: Views, made: Prosthesis) -> dict[str, lis
     Returns
     -------
     dict of str to list of Shot
-        "views", "cuts" and "slices".
+        "views".
     """
-    made = made.cropped()  # no picture looks beyond its box
-    return {
-        "views": view_shots(case, views, made.mesh),
-        "cuts": cut_shots(case, made),
-        "slices": slice_shots(case, made),
-    }
+    return {"views": view_shots(case, views, made.mesh)}
 
 
 def view_shots(case: Prepared, views: Views, prosthesis: Mesh) -> list[Shot]:

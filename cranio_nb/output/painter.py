@@ -43,7 +43,7 @@ class Painter:
     >>> with Painter() as painter:
     ...     case = prepare("head/ct")
     ...     painter.look_at(case)
-    ...     result = run_design(case, method="hull", designed=painter.draw)
+    ...     result = run_design(case, method="hull", shaped=painter.draw_patch, designed=painter.draw)
     ...     page = painter.page(result).result()
     >>> page[:15]
     '<!DOCTYPE html>'
@@ -53,6 +53,7 @@ class Painter:
         self._process = _start() if _n_processors() > 1 else None
         self._thread = ThreadPoolExecutor(1)  # all that follows is done here, one after the other
         self._working = True
+        self._shape: Prosthesis | None = None
 
     def __enter__(self) -> Painter:
         return self
@@ -76,14 +77,26 @@ class Painter:
         self._case = case
         self._seen = self._thread.submit(self._see, case)
 
+    def draw_patch(self, shape: Prosthesis) -> None:
+        """Draw the pictures that need no surface.
+
+        Parameters
+        ----------
+        shape : Prosthesis
+            Designed for the case that was looked at; its mesh may still be missing.
+        """
+        self._shape, self._patch_drawn = shape, self._thread.submit(self._draw_patch, shape)
+
     def draw(self, made: Prosthesis) -> None:
-        """Draw all pictures that need no measures.
+        """Draw all other pictures that need no measures.
 
         Parameters
         ----------
         made : Prosthesis
-            Designed for the case that was looked at.
+            The one whose patch is drawn; where none was, its patch is drawn first.
         """
+        if self._shape is None:
+            self.draw_patch(made)
         self._drawn = self._thread.submit(self._draw, made)
 
     def page(self, result: RunResult) -> Future[str]:
@@ -114,31 +127,48 @@ class Painter:
 
         return skull_views(case)
 
-    def _draw(self, made: Prosthesis) -> Shots | None:
-        """Show the prosthesis to the process, or draw it here."""
-        views = self._seen.result()
-        if views is None and self._tell(made.cropped(), _known(self._case)):
+    def _draw_patch(self, shape: Prosthesis) -> Shots | None:
+        """Show the patch to the process, or draw it here."""
+        if self._seen.result() is None and self._tell(shape.cropped(), _known(self._case)):
             return None
-        from .design_pictures import shape_shots, skull_views
+        return self._patch_shots(shape)
 
-        return shape_shots(self._case, views or skull_views(self._case), made) if self._working else {}
+    def _draw(self, made: Prosthesis) -> Shots | None:
+        """Show the surface to the process, or draw it here."""
+        if self._patch_drawn.result() is None and self._tell(made.cropped(), _known(self._case, self._shape)):
+            return None
+        return self._surface_shots(made)
 
     def _page(self, result: RunResult) -> str:
         """The page that the process makes of a run; where it died, or was never there, the page is made here."""
-        shots = self._drawn.result()
-        if shots is None and self._tell(result, _known(self._case, result.prosthesis)):
+        patch, surface, made = self._patch_drawn.result(), self._drawn.result(), result.prosthesis
+        if surface is None and self._tell(result, _known(self._case, self._shape, made)):
             assert self._process is not None and self._process.stdout is not None
             with suppress(*_CUT_SHORT):
                 page: str = pickle.load(self._process.stdout)
                 return page
         from .design_page import measure_shots, report_page
-        from .design_pictures import shape_shots, skull_views
 
         if not self._working:
             return ""
-        if shots is None:  # the process was killed, perhaps for want of memory
-            shots = shape_shots(self._case, skull_views(self._case), result.prosthesis)
-        return report_page(result, shots | measure_shots(result))
+        # what the process had begun when it was killed, perhaps for want of memory
+        patch = self._patch_shots(made) if patch is None else patch
+        surface = self._surface_shots(made) if surface is None else surface
+        return report_page(result, patch | surface | measure_shots(result))
+
+    def _patch_shots(self, made: Prosthesis) -> Shots:
+        """The pictures without a surface, drawn here while they are wanted."""
+        from .design_pictures import patch_shots
+
+        return patch_shots(self._case, made) if self._working else {}
+
+    def _surface_shots(self, made: Prosthesis) -> Shots:
+        """The pictures of the surface, drawn here while they are wanted."""
+        from .design_pictures import skull_views, surface_shots
+
+        if not self._working:
+            return {}
+        return surface_shots(self._case, self._seen.result() or skull_views(self._case), made)
 
     def _tell(self, what: Prepared | Prosthesis | RunResult, known: Known | None = None) -> bool:
         """Send to the process; whether it was there."""
@@ -151,13 +181,13 @@ class Painter:
 
 
 def paint_for_parent() -> None:
-    """In the process that draws: take case, prosthesis and result from standard input, answer on standard output.
+    """In the process that draws: take case, patch, surface and result from standard input, answer on standard output.
 
     It ends with the process that started it, whose end closes both.
     """
     from ..drawing import figures
     from .design_page import measure_shots, report_page
-    from .design_pictures import shape_shots, skull_views
+    from .design_pictures import patch_shots, skull_views, surface_shots
     from .pages import page_template, shot
 
     answer, sys.stdout = sys.stdout.buffer, sys.stderr  # what a library prints is no answer
@@ -167,18 +197,22 @@ def paint_for_parent() -> None:
     with suppress(*_CUT_SHORT):  # there is nothing more to draw
         case: Prepared = _received(sys.stdin.buffer)
         views, _ = skull_views(case), case.digests
-        made: Prosthesis = _received(sys.stdin.buffer, _known(case))
-        shots = shape_shots(case, views, made)
-        result: RunResult = _received(sys.stdin.buffer, _known(case, made))
-        page = report_page(result, shots | measure_shots(result))
+        shape: Prosthesis = _received(sys.stdin.buffer, _known(case))
+        patch = patch_shots(case, shape)
+        made: Prosthesis = _received(sys.stdin.buffer, _known(case, shape))
+        surface = surface_shots(case, views, made)
+        result: RunResult = _received(sys.stdin.buffer, _known(case, shape, made))
+        page = report_page(result, patch | surface | measure_shots(result))
         pickle.dump(page, answer, protocol=pickle.HIGHEST_PROTOCOL)
         answer.flush()
 
 
-def _known(case: Prepared, made: Prosthesis | None = None) -> Known:
+def _known(case: Prepared, shape: Prosthesis | None = None, made: Prosthesis | None = None) -> Known:
     """What both processes have, by names that both give it: there it stays the same thing."""
-    openings = {f"opening {i}": one for i, one in enumerate(case.openings)}
-    return openings if made is None else openings | {"case": case, "made": made}
+    known: dict[str, Any] = {f"opening {i}": one for i, one in enumerate(case.openings)}
+    if shape is not None:
+        known |= {f"working {i}": one for i, one in enumerate(shape.working)}
+    return known if made is None else known | {"case": case, "made": made}
 
 
 def _send(stream: IO[bytes], what: Any, known: Known) -> None:

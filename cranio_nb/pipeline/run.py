@@ -71,6 +71,7 @@ def run_design(
     method: str = "slicewise",
     preset: str = "default",
     progress: Progress | None = None,
+    shaped: Callable[[Prosthesis], None] | None = None,
     designed: Callable[[Prosthesis], None] | None = None,
     **options: Any,
 ) -> RunResult:
@@ -84,6 +85,8 @@ def run_design(
         As for `design`.
     progress : callable, optional
         Called with (step, fraction of the whole run, of which `prepare` is the first 0.4).
+    shaped : callable, optional
+        As for `design`: called with the prosthesis before it has a surface.
     designed : callable, optional
         Called with the prosthesis before it is measured: its pictures may begin.
 
@@ -117,6 +120,7 @@ def run_design(
         method=method,
         preset=preset,
         progress=lambda step, done: report(step, 0.4 + 0.4 * done),
+        shaped=shaped,
         **options,
     )
     check_patch(made, case.openings)

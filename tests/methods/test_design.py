@@ -79,8 +79,8 @@ def designed(method, skull, openings):
     return cache(lambda defect: run(method, skull(defect), openings(defect)))
 
 
-def run(method, bone, openings=None):
-    return design(bone, openings, method=method.name, preset=method.preset)
+def run(method, bone, openings=None, **more):
+    return design(bone, openings, method=method.name, preset=method.preset, **more)
 
 
 def dice(a, b):
@@ -289,6 +289,15 @@ def test_progress_only_goes_forward(method, skull, openings):
     parts = [done for _, done in told]
     assert parts == sorted(parts) and parts and 0 <= parts[0] and parts[-1] <= 1
     assert all(isinstance(stage, str) and stage for stage, _ in told)
+
+
+def test_the_shape_is_told_before_it_has_a_surface(method, skull, openings):
+    told = []
+    made = run(method, skull("burr_hole"), openings("burr_hole"), shaped=told.append)
+    (shape,) = told
+    assert (shape.method, shape.parameters, len(shape.mesh.faces)) == (made.method, made.parameters, 0)
+    np.testing.assert_array_equal(shape.patch.voxels, made.patch.voxels)
+    assert shape.working == made.working
 
 
 def test_an_empty_list_of_openings_is_refused(method, skull):

@@ -133,7 +133,7 @@ def test_pictures_that_cannot_be_drawn_leave_nothing_behind(phantom, tmp_path, m
     def fail(*_):
         raise MemoryError("no room for pictures")
 
-    monkeypatch.setattr(design_pictures, "shape_shots", fail)
+    monkeypatch.setattr(design_pictures, "patch_shots", fail)
     monkeypatch.setattr(painter, "_PROGRAM", "raise SystemExit")
     write_case(tmp_path, phantom())
     with Painter() as one, pytest.raises(MemoryError, match="no room"), staged(tmp_path / "out") as part:

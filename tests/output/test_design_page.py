@@ -14,8 +14,10 @@ from cranio_nb.readers import Finding
 
 
 def page_of(result) -> str:
-    shapes = design_pictures.shape_shots(result.case, design_pictures.skull_views(result.case), result.prosthesis)
-    return design_page.report_page(result, shapes | design_page.measure_shots(result))
+    case, made = result.case, result.prosthesis
+    surface = design_pictures.surface_shots(case, design_pictures.skull_views(case), made)
+    shots = design_pictures.patch_shots(case, made) | surface | design_page.measure_shots(result)
+    return design_page.report_page(result, shots)
 
 
 @pytest.fixture(scope="module")

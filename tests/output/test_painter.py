@@ -1,5 +1,6 @@
 """A page made elsewhere is the one made here, whatever becomes of the process that makes it."""
 
+import re
 import subprocess
 import sys
 import threading
@@ -8,7 +9,7 @@ import pytest
 
 from cranio_nb.output import painter
 from cranio_nb.output.design_page import measure_shots, report_page
-from cranio_nb.output.design_pictures import shape_shots, skull_views
+from cranio_nb.output.design_pictures import patch_shots, skull_views, surface_shots
 from cranio_nb.output.painter import Painter
 from cranio_nb.pipeline.preparation import prepare
 from cranio_nb.pipeline.run import run_design
@@ -30,7 +31,8 @@ def run(case):
 
 @pytest.fixture(scope="module")
 def here(case, run):
-    return report_page(run, shape_shots(case, skull_views(case), run.prosthesis) | measure_shots(run))
+    surface = surface_shots(case, skull_views(case), run.prosthesis)
+    return report_page(run, patch_shots(case, run.prosthesis) | surface | measure_shots(run))
 
 
 def painted(case, run):
@@ -56,9 +58,22 @@ def test_with_one_processor_a_thread_makes_the_page(case, run, here, monkeypatch
 
 
 def test_with_two_processors_a_process_makes_the_page_and_ends(case, run, here, processes, monkeypatch):
-    monkeypatch.setattr("cranio_nb.output.design_pictures.shape_shots", lambda *_: pytest.fail("drawn here"))
+    monkeypatch.setattr("cranio_nb.output.design_pictures.surface_shots", lambda *_: pytest.fail("drawn here"))
     assert painted(case, run) == here
     assert len(processes) == 1 and processes[0].wait(60) is not None
+
+
+def without_times(page):
+    return re.sub(r"\d+\.\d s|[\d-]+ \d\d:\d\d UTC", "", page)
+
+
+@pytest.mark.parametrize("n_processors", [1, 2])
+def test_a_patch_drawn_before_there_is_a_surface_makes_the_same_page(n_processors, case, here, monkeypatch):
+    monkeypatch.setattr(painter, "_n_processors", lambda: n_processors)
+    with Painter() as one:
+        one.look_at(case)
+        result = run_design(case, method="slicewise", shaped=one.draw_patch, designed=one.draw)
+        assert without_times(one.page(result).result()) == without_times(here)
 
 
 @pytest.mark.parametrize(
@@ -68,9 +83,17 @@ def test_with_two_processors_a_process_makes_the_page_and_ends(case, run, here, 
         "import pickle; pickle.load(sys.stdin.buffer)",
         "from cranio_nb.output.painter import _received, _known; case = _received(sys.stdin.buffer);"
         " _received(sys.stdin.buffer, _known(case))",
+        "from cranio_nb.output.painter import _received, _known; case = _received(sys.stdin.buffer);"
+        " shape = _received(sys.stdin.buffer, _known(case)); _received(sys.stdin.buffer, _known(case, shape))",
         "print('no page', flush=True); sys.stdin.buffer.read()",
     ],
-    ids=["dies at once", "dies within the case", "dies after the prosthesis", "answers something else"],
+    ids=[
+        "dies at once",
+        "dies within the case",
+        "dies after the patch",
+        "dies after the surface",
+        "answers something else",
+    ],
 )
 def test_where_the_process_dies_the_page_is_made_here(program, case, run, here, processes, monkeypatch):
     monkeypatch.setattr(painter, "_PROGRAM", program)
@@ -82,7 +105,7 @@ def test_what_a_library_prints_in_the_process_is_no_page(case, run, here, proces
     loud = "from cranio_nb.output import design_pictures as d; draw = d.skull_views;"
     loud += "d.skull_views = lambda case: print('a remark', flush=True) or draw(case);"
     monkeypatch.setattr(painter, "_PROGRAM", loud + painter._PROGRAM)
-    monkeypatch.setattr("cranio_nb.output.design_pictures.shape_shots", lambda *_: pytest.fail("drawn here"))
+    monkeypatch.setattr("cranio_nb.output.design_pictures.surface_shots", lambda *_: pytest.fail("drawn here"))
     assert painted(case, run) == here
 
 
