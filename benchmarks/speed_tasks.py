@@ -97,9 +97,10 @@ def stages(source: str, method: str, out: str) -> Figures:
     timed.lap("record")
     without = sum(timed.seconds.values())
     from cranio_nb.output.design_page import measure_shots, report_page
-    from cranio_nb.output.design_pictures import shape_shots, skull_views
+    from cranio_nb.output.design_pictures import patch_shots, skull_views, surface_shots
 
-    report_page(result, shape_shots(case, skull_views(case), result.prosthesis) | measure_shots(result))
+    surface = surface_shots(case, skull_views(case), result.prosthesis)
+    report_page(result, patch_shots(case, result.prosthesis) | surface | measure_shots(result))
     timed.lap("report")
     return timed.seconds | {"without report": without}
 

@@ -52,7 +52,7 @@ def report_page(result: RunResult, shots: Mapping[str, Sequence[Shot]]) -> str:
     ----------
     result : RunResult
     shots : dict of str to sequence of Shot
-        What `design_pictures.shape_shots` and `measure_shots` drew of it.
+        What `design_pictures.patch_shots`, `surface_shots` and `measure_shots` drew of it.
 
     Returns
     -------
