@@ -25,6 +25,7 @@ if TYPE_CHECKING:  # what draws is loaded where it draws, so that the process ca
     Shots = dict[str, list[Shot]]
 
 _CUT_SHORT = (EOFError, pickle.UnpicklingError)
+_NOT_SENT = (pickle.PicklingError, AttributeError, TypeError)  # what pickle raises for, say, a function in a function
 _PROGRAM = "from cranio_nb.output.painter import paint_for_parent; paint_for_parent()"
 
 Known = Mapping[str, Any]
@@ -171,11 +172,11 @@ class Painter:
         return surface_shots(self._case, self._seen.result() or skull_views(self._case), made)
 
     def _tell(self, what: Prepared | Prosthesis | RunResult, known: Known | None = None) -> bool:
-        """Send to the process; whether it was there."""
+        """Send to the process; whether it was there, and this can be sent: a method from outside may keep anything."""
         assert self._process is not None and self._process.stdin is not None
         try:
             _send(self._process.stdin, what, known or {})
-        except OSError:
+        except (OSError, *_NOT_SENT):
             return False
         return True
 

@@ -4,6 +4,7 @@ import re
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 
 import pytest
 
@@ -99,6 +100,11 @@ def test_where_the_process_dies_the_page_is_made_here(program, case, run, here, 
     monkeypatch.setattr(painter, "_PROGRAM", program)
     assert painted(case, run) == here
     assert processes[0].wait(60) is not None
+
+
+def test_what_a_method_keeps_and_cannot_be_sent_is_drawn_here(case, run, here, processes):
+    keeps = replace(run.prosthesis, working=(*run.prosthesis.working, lambda: None))
+    assert painted(case, replace(run, prosthesis=keeps)) == here
 
 
 def test_what_a_library_prints_in_the_process_is_no_page(case, run, here, processes, monkeypatch):
