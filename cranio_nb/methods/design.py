@@ -157,13 +157,13 @@ def assemble(
     if not patch.any():
         message = f"The method {method} could not bridge any part of the opening."
         raise NoOpening("NothingBridged", message, "Try another method or preset.")
-    no_mesh = Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
-    shape = Prosthesis(no_mesh, np.zeros(0, np.uint8), bone.with_voxels(patch), method, parameters, {}, tuple(working))
+    solid, no_mesh = bone.with_voxels(patch), Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
+    shape = Prosthesis(no_mesh, np.zeros(0, np.uint8), solid, method, parameters, {}, tuple(working))
     if shaped is not None:
         shaped(shape)
     report("surface", _SURFACE)
     # stage 5 and the sides, from the joined voxels: openings may touch
-    mesh = surface_reconstruction.extract_surface(bone.with_voxels(patch), smooth=parameters["smooth"])
+    mesh = surface_reconstruction.extract_surface(solid, smooth=parameters["smooth"])
     sides = face_sides.label_faces(mesh, bone, openings[0].head_centre)
     record = {"version": version("cranio-nb"), "seconds": time.perf_counter() - began, **join_records(records)}
     return replace(shape, mesh=mesh, sides=sides, record=record)
